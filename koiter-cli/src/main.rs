@@ -1,0 +1,3 @@
+//! The command line of Koiter.
+#![forbid(unsafe_code)]
+fn main() {}

@@ -1,0 +1,5 @@
+//! From one state to the next.
+
+mod report;
+
+pub use report::{StepError, StepReport};

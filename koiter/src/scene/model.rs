@@ -1,0 +1,215 @@
+//! A checked scene, ready to be simulated: shells, obstacles, constraints, loads.
+
+use crate::Vec3;
+use crate::mesh::{TriMesh, VertexId};
+
+/// A triangle mesh with positions.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// Topology.
+    pub mesh: TriMesh,
+    /// Vertex positions [m].
+    pub positions: Vec<Vec3>,
+}
+
+/// Which second fundamental form (or hinge) a shell bends with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum BendingModel {
+    /// Bending-Active Cosserat: mid-edge directors, tangent profile.
+    #[default]
+    Bac,
+    /// Mid-edge directors, sine profile.
+    Dcs,
+    /// Mid-edge directors, second-order profile.
+    Dso,
+    /// Discrete Shells hinge, energy quadratic in the hinge angle.
+    DsTheta,
+    /// No bending energy: a pure membrane.
+    None,
+}
+
+/// A shell in its start configuration.
+#[derive(Clone, Debug)]
+pub struct Shell {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Start configuration.
+    pub surface: Surface,
+    /// Start velocities [m/s], one a vertex.
+    pub velocities: Vec<Vec3>,
+    /// Positions of the rest configuration [m]: they give the rest first fundamental form.
+    pub rest_positions: Vec<Vec3>,
+    /// Whether the rest second fundamental form is that of `rest_positions` (else zero: rest flat).
+    pub rest_curved: bool,
+    /// Thickness [m].
+    pub thickness: f64,
+    /// Mass density [kg/m³].
+    pub density: f64,
+    /// Young's modulus [Pa].
+    pub youngs_modulus: f64,
+    /// Poisson's ratio.
+    pub poissons_ratio: f64,
+    /// Bending model.
+    pub bending: BendingModel,
+    /// Friction coefficient of the surface.
+    pub friction: f64,
+    /// Half the distance at which two midsurfaces touch [m]; 0: midsurfaces may come arbitrarily close.
+    pub contact_offset: f64,
+}
+
+/// Shape of an obstacle at time 0.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum ObstacleShape {
+    /// Half-space below a plane; `normal` is a unit vector and points to the free side.
+    Plane {
+        /// A point of the plane [m].
+        point: Vec3,
+        /// Unit normal.
+        normal: Vec3,
+    },
+    /// Solid ball.
+    Sphere {
+        /// Centre [m].
+        center: Vec3,
+        /// Radius [m].
+        radius: f64,
+    },
+    /// A ball swept along a segment: an exact cylinder with round ends.
+    Capsule {
+        /// Ends of the axis [m].
+        ends: [Vec3; 2],
+        /// Radius [m].
+        radius: f64,
+    },
+    /// A triangle mesh, closed or open (boxes and flat-ended cylinders are meshes).
+    Mesh(Surface),
+}
+
+/// An obstacle: it acts on shells and is not acted upon.
+#[derive(Clone, Debug)]
+pub struct Obstacle {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Shape at time 0.
+    pub shape: ObstacleShape,
+    /// Friction coefficient of the surface.
+    pub friction: f64,
+    /// Motion relative to time 0.
+    pub motion: Motion,
+}
+
+/// A value that is piecewise linear in time, constant before the first and after the last key.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Schedule<T> {
+    /// Key times [s], increasing.
+    pub times: Vec<f64>,
+    /// Values at the keys.
+    pub values: Vec<T>,
+}
+
+/// A scheduled rigid motion: x(t) = R(t) (x(0) − pivot) + pivot + translation(t).
+#[derive(Clone, Debug, Default)]
+pub struct Motion {
+    /// Translation [m].
+    pub translation: Option<Schedule<Vec3>>,
+    /// Rotation, if any.
+    pub rotation: Option<Rotation>,
+}
+
+/// A scheduled rotation about a fixed axis.
+#[derive(Clone, Debug)]
+pub struct Rotation {
+    /// A point of the axis [m].
+    pub pivot: Vec3,
+    /// Unit direction of the axis.
+    pub axis: Vec3,
+    /// Angle [rad].
+    pub angle: Schedule<f64>,
+}
+
+/// Vertices whose motion is prescribed.
+#[derive(Clone, Debug)]
+pub struct Constraint {
+    /// Index of the shell.
+    pub shell: usize,
+    /// Constrained vertices.
+    pub vertices: Vec<VertexId>,
+    /// Which of x, y, z are prescribed.
+    pub axes: [bool; 3],
+    /// Motion relative to the start positions.
+    pub motion: Motion,
+    /// Whether the edge directors between constrained vertices are held too (a clamp).
+    pub clamp_directors: bool,
+    /// The constraint ends at this time [s] (never: infinity).
+    pub until: f64,
+}
+
+/// How surfaces touch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactOptions {
+    /// Whether contact is on.
+    pub enabled: bool,
+    /// Distance [m] below which the barrier acts, measured between the offset surfaces; `None`: chosen from the mesh.
+    pub d_hat: Option<f64>,
+    /// Barrier stiffness [J/m²]; `None`: chosen and adapted.
+    pub kappa: Option<f64>,
+    /// Speed [m/s] below which friction is smoothed.
+    pub friction_speed: f64,
+}
+
+impl Default for ContactOptions {
+    fn default() -> Self {
+        Self { enabled: true, d_hat: None, kappa: None, friction_speed: 1e-3 }
+    }
+}
+
+/// Newton's method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolverOptions {
+    /// Newton stops when no point of the offset surfaces moved faster than this [m/s] (dynamics).
+    pub velocity_tolerance: f64,
+    /// Newton stops when no point of the offset surfaces moved further than this [m] (statics).
+    pub displacement_tolerance: f64,
+    /// Largest number of Newton iterations a step.
+    pub max_iterations: usize,
+}
+
+impl Default for SolverOptions {
+    fn default() -> Self {
+        Self { velocity_tolerance: 1e-3, displacement_tolerance: 1e-7, max_iterations: 200 }
+    }
+}
+
+/// How the state advances.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum IntegratorKind {
+    /// Implicit Euler dynamics.
+    #[default]
+    ImplicitEuler,
+    /// A sequence of static equilibria along the schedules; one step is one static solve.
+    QuasiStatic,
+}
+
+/// Everything a [`super::Simulation`] is made of.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Shells.
+    pub shells: Vec<Shell>,
+    /// Obstacles.
+    pub obstacles: Vec<Obstacle>,
+    /// Prescribed vertices.
+    pub constraints: Vec<Constraint>,
+    /// Gravitational acceleration [m/s²].
+    pub gravity: Vec3,
+    /// Factor on gravity over time (`None`: 1).
+    pub gravity_scale: Option<Schedule<f64>>,
+    /// Contact.
+    pub contact: ContactOptions,
+    /// Newton's method.
+    pub solver: SolverOptions,
+    /// Integrator.
+    pub integrator: IntegratorKind,
+}
