@@ -1,16 +1,9 @@
 //! A checked scene, ready to be simulated: shells, obstacles, constraints, loads.
 
 use crate::Vec3;
-use crate::mesh::{TriMesh, VertexId};
+use crate::mesh::VertexId;
 
-/// A triangle mesh with positions.
-#[derive(Clone, Debug)]
-pub struct Surface {
-    /// Topology.
-    pub mesh: TriMesh,
-    /// Vertex positions [m].
-    pub positions: Vec<Vec3>,
-}
+pub use crate::mesh::Surface;
 
 /// Which second fundamental form (or hinge) a shell bends with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,0 +1,145 @@
+//! What can be wrong with a mesh: each message names the element, the value and what to do.
+
+/// Why triangles (and positions) are not a mesh that can be simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// There is no face.
+    #[error("the mesh has no faces; give at least one triangle")]
+    Empty,
+    /// More elements than 32-bit indices can number.
+    #[error(
+        "the mesh has {count} {what}, more than the {limit} that 32-bit indices allow; split it"
+    )]
+    TooLarge {
+        /// "vertices" or "faces".
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A face names a vertex that does not exist.
+    #[error(
+        "face {face} uses vertex {vertex}, but there are only {num_vertices} vertices \
+         (numbered from 0); correct the index"
+    )]
+    IndexOutOfRange {
+        /// Face index.
+        face: usize,
+        /// The index it uses.
+        vertex: u32,
+        /// Number of vertices.
+        num_vertices: usize,
+    },
+    /// A face uses a vertex twice.
+    #[error("face {face} uses vertex {vertex} more than once: {corners:?}; remove the face")]
+    RepeatedIndex {
+        /// Face index.
+        face: usize,
+        /// The repeated vertex.
+        vertex: u32,
+        /// All three corners.
+        corners: [u32; 3],
+    },
+    /// Two faces have the same three vertices.
+    #[error("faces {faces:?} have the same vertices {vertices:?}; remove one of them")]
+    DuplicateFace {
+        /// The two faces.
+        faces: [usize; 2],
+        /// Their vertices, sorted.
+        vertices: [u32; 3],
+    },
+    /// More than two faces share an edge.
+    #[error(
+        "edge {edge:?} belongs to {} faces {faces:?}; a shell has at most two faces an edge: \
+         remove the extra faces, or give each sheet its own copy of the edge's vertices",
+        faces.len()
+    )]
+    NonManifoldEdge {
+        /// End vertices of the edge.
+        edge: [u32; 2],
+        /// All faces at the edge.
+        faces: Vec<usize>,
+    },
+    /// Two neighbours traverse their edge in the same direction.
+    #[error(
+        "faces {faces:?} both traverse edge {edge:?} in the same direction; reverse one of them, \
+         or let the orientation be repaired"
+    )]
+    InconsistentOrientation {
+        /// End vertices of the edge.
+        edge: [u32; 2],
+        /// The two faces.
+        faces: [usize; 2],
+    },
+    /// No choice of orientations agrees, as on a Möbius strip.
+    #[error(
+        "the surface is one-sided: no orientation agrees across edge {edge:?} of faces {faces:?}; \
+         cut it open along a line of edges by duplicating the vertices of that line"
+    )]
+    NotOrientable {
+        /// End vertices of the edge where the contradiction shows.
+        edge: [u32; 2],
+        /// The two faces.
+        faces: [usize; 2],
+    },
+    /// Fans of faces touch at a vertex without sharing an edge there.
+    #[error(
+        "vertex {vertex} joins separate fans of faces (faces {} and {} meet only at this point); \
+         give each fan its own copy of the vertex",
+        faces[0], faces[1]
+    )]
+    NonManifoldVertex {
+        /// Vertex index.
+        vertex: u32,
+        /// One face of each of two fans.
+        faces: [usize; 2],
+    },
+    /// Vertices that belong to no face.
+    #[error(
+        "{count} vertices belong to no face (the first is vertex {first}); remove them, or let \
+         unreferenced vertices be dropped"
+    )]
+    Unreferenced {
+        /// The first such vertex.
+        first: u32,
+        /// How many there are.
+        count: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error(
+        "vertex {vertex} has a coordinate that is not a finite number: {position:?}; correct it"
+    )]
+    NotFinite {
+        /// Vertex index.
+        vertex: usize,
+        /// Its position [m].
+        position: [f64; 3],
+    },
+    /// A triangle without area, relative to its size.
+    #[error(
+        "face {face} {corners:?} is degenerate: its height is {ratio:.1e} of its longest edge \
+         ({longest_edge:.3e} m), at least {limit:.0e} is needed; collapse or remove the face"
+    )]
+    DegenerateFace {
+        /// Face index.
+        face: usize,
+        /// Its vertices.
+        corners: [u32; 3],
+        /// Smallest height over longest edge.
+        ratio: f64,
+        /// Longest edge [m].
+        longest_edge: f64,
+        /// The smallest ratio accepted.
+        limit: f64,
+    },
+    /// Positions and topology do not belong together.
+    #[error("there are {positions} positions for {vertices} vertices; give one position a vertex")]
+    PositionCount {
+        /// Number of positions.
+        positions: usize,
+        /// Number of vertices.
+        vertices: usize,
+    },
+}
