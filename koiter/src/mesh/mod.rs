@@ -6,6 +6,7 @@
 //! - an edge is `[u, v]` with `u < v`; its first face is the one that traverses it from `u` to `v`.
 
 mod error;
+pub mod generate;
 pub mod repair;
 mod surface;
 mod topology;
