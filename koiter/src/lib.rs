@@ -2,6 +2,8 @@
 #![forbid(unsafe_code)]
 
 pub mod integrate;
+#[cfg(feature = "io")]
+pub mod io;
 pub mod mesh;
 pub mod scene;
 

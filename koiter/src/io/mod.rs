@@ -1,0 +1,11 @@
+//! Files: meshes in, pictures' raw material out, and the result folder of a run.
+//!
+//! Nothing else in the library reads or writes files. Every parser takes bytes, so that it can be tested and fuzzed
+//! without a file system, and no parser panics, hangs or reserves memory on the word of a header.
+
+mod atomic_file;
+mod bytes;
+mod checksum;
+pub mod result;
+
+pub use atomic_file::write_atomically;

@@ -1,0 +1,41 @@
+//! The result folder of a run: what was simulated, its topology, a file a frame, a line of figures a step.
+//!
+//! ```text
+//! manifest.json     format, version, title, scene text, parts
+//! topology.bin      the faces of all parts
+//! frames/00000.bin  step, time, positions, fields; 00001.bin, …
+//! stats.jsonl       one JSON object a step
+//! summary.json      one JSON object, at the end of the run
+//! ```
+//!
+//! Vertices and faces of all parts are numbered through; a [`Part`] says which ranges are its own. Numbers in the
+//! binary files are little-endian, each such file ends in a CRC-32 of what stands before. Files are written under
+//! another name and renamed when they are complete, so a run that is killed leaves whole frames only.
+
+mod error;
+mod frame;
+mod manifest;
+mod reader;
+mod topology_file;
+mod writer;
+
+pub use error::ResultError;
+pub use frame::{Field, Frame, FrameInfo};
+pub use manifest::{Manifest, Part, PartKind, UpAxis};
+pub use reader::ResultReader;
+pub use writer::ResultWriter;
+
+use std::path::{Path, PathBuf};
+
+const MANIFEST: &str = "manifest.json";
+const TOPOLOGY: &str = "topology.bin";
+const FRAMES: &str = "frames";
+const STATS: &str = "stats.jsonl";
+const SUMMARY: &str = "summary.json";
+
+fn frame_path(folder: &Path, index: usize) -> PathBuf {
+    folder.join(FRAMES).join(format!("{index:05}.bin"))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,96 @@
+//! What can go wrong with a result folder.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a result folder could not be written or read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ResultError {
+    /// The system refused: full disk, no permission, no such folder.
+    #[error("could not {action} {}: {source}", path.display())]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The folder holds something else.
+    #[error(
+        "{} is not empty and not a Koiter result; choose another folder, or empty it first",
+        path.display()
+    )]
+    NotEmpty {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The folder to be read is not a result.
+    #[error("{} is not a Koiter result: {reason}", path.display())]
+    NotAResult {
+        /// The folder.
+        path: PathBuf,
+        /// What is missing or wrong.
+        reason: String,
+    },
+    /// The format is newer than this program.
+    #[error(
+        "{} has format version {found}, this program reads version {supported}; use a newer Koiter",
+        path.display()
+    )]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// Version found.
+        found: u32,
+        /// Version this program reads.
+        supported: u32,
+    },
+    /// A file of the result is damaged.
+    #[error("{} is broken: {reason}; delete it, or run the scene again", path.display())]
+    Broken {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// What was to be written contradicts itself.
+    #[error("the {what} cannot be written: {reason}")]
+    Invalid {
+        /// "manifest", "topology" or "frame".
+        what: &'static str,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// There is no such frame.
+    #[error("there is no frame {index}: {} has {len} frames, numbered from 0", path.display())]
+    NoFrame {
+        /// The frame asked for.
+        index: usize,
+        /// Number of frames.
+        len: usize,
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A value could not be turned into JSON.
+    #[error("could not turn a value for {} into JSON: {source}", path.display())]
+    Json {
+        /// The file it was meant for.
+        path: PathBuf,
+        /// What the serialiser said.
+        source: serde_json::Error,
+    },
+}
+
+/// Wraps a system error: `map_err(while_trying("read", path))`.
+pub(super) fn while_trying<'a>(
+    action: &'static str,
+    path: &'a Path,
+) -> impl FnOnce(io::Error) -> ResultError + 'a {
+    move |source| ResultError::Io {
+        action,
+        path: path.to_path_buf(),
+        source,
+    }
+}

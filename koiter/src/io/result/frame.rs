@@ -1,0 +1,213 @@
+//! One frame: `frames/00000.bin`.
+//!
+//! ```text
+//! "KOITERFR"  u32 version
+//! u64 step  f64 time  u64 vertices  u64 faces  u32 vertex fields  u32 face fields
+//! f64 × 3 a vertex
+//! each field, of vertices first:  u32 length of name  name (UTF-8)  f32 a vertex or face
+//! u32 CRC-32
+//! ```
+
+use super::topology_file::checked_body;
+use crate::Vec3;
+use crate::io::bytes::{ByteReader, Endian};
+use crate::io::checksum::crc32;
+
+const MAGIC: &[u8; 8] = b"KOITERFR";
+const VERSION: u32 = 1;
+/// Bytes of the header, from the magic to the numbers of fields.
+pub(super) const HEADER_LENGTH: usize = 8 + 4 + 8 + 8 + 8 + 8 + 4 + 4;
+
+/// The state of all parts at one time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Number of the step that led here; 0 at the start.
+    pub step: u64,
+    /// Time [s].
+    pub time: f64,
+    /// Positions of the vertices of all parts [m].
+    pub positions: Vec<Vec3>,
+    /// Values at vertices.
+    pub vertex_fields: Vec<Field>,
+    /// Values at faces.
+    pub face_fields: Vec<Field>,
+}
+
+/// A named value at every vertex or face of all parts, in single precision: for looking at, not for restarting.
+///
+/// The unit belongs to the name's documentation, SI without prefix. NaN: no value here (strain of an obstacle).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Field {
+    /// Name in snake case, such as `bending_energy_density`.
+    pub name: String,
+    /// One value a vertex or face.
+    pub values: Vec<f32>,
+}
+
+/// What the head of a frame file says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameInfo {
+    /// Number of the step.
+    pub step: u64,
+    /// Time [s].
+    pub time: f64,
+}
+
+struct Header {
+    info: FrameInfo,
+    num_vertices: usize,
+    num_faces: usize,
+    num_vertex_fields: u32,
+    num_face_fields: u32,
+}
+
+impl Frame {
+    /// The field of this name, of faces or of vertices.
+    pub fn field(&self, name: &str) -> Option<&Field> {
+        self.face_fields
+            .iter()
+            .chain(&self.vertex_fields)
+            .find(|field| field.name == name)
+    }
+
+    /// Checks the lengths, and that times and positions are finite.
+    pub(super) fn check(&self, num_vertices: usize, num_faces: usize) -> Result<(), String> {
+        if !self.time.is_finite() {
+            return Err(format!("its time is {}", self.time));
+        }
+        if self.positions.len() != num_vertices {
+            return Err(format!(
+                "it has {} positions for {num_vertices} vertices",
+                self.positions.len()
+            ));
+        }
+        for (vertex, x) in self.positions.iter().enumerate() {
+            if !x.iter().all(|value| value.is_finite()) {
+                let [x, y, z] = (*x).into();
+                return Err(format!("vertex {vertex} is at ({x}, {y}, {z})"));
+            }
+        }
+        for (fields, count, what) in [
+            (&self.vertex_fields, num_vertices, "vertices"),
+            (&self.face_fields, num_faces, "faces"),
+        ] {
+            if let Some(field) = fields.iter().find(|field| field.values.len() != count) {
+                let (name, len) = (&field.name, field.values.len());
+                return Err(format!(
+                    "field '{name}' has {len} values for {count} {what}"
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn encode(&self, num_faces: usize) -> Vec<u8> {
+        let num_values = self
+            .vertex_fields
+            .iter()
+            .chain(&self.face_fields)
+            .map(|f| f.values.len() + 16);
+        let mut bytes =
+            Vec::with_capacity(64 + 24 * self.positions.len() + 4 * num_values.sum::<usize>());
+        bytes.extend(MAGIC);
+        bytes.extend(VERSION.to_le_bytes());
+        bytes.extend(self.step.to_le_bytes());
+        bytes.extend(self.time.to_le_bytes());
+        bytes.extend((self.positions.len() as u64).to_le_bytes());
+        bytes.extend((num_faces as u64).to_le_bytes());
+        bytes.extend((self.vertex_fields.len() as u32).to_le_bytes());
+        bytes.extend((self.face_fields.len() as u32).to_le_bytes());
+        for value in self.positions.iter().flat_map(|x| x.iter()) {
+            bytes.extend(value.to_le_bytes());
+        }
+        for field in self.vertex_fields.iter().chain(&self.face_fields) {
+            bytes.extend((field.name.len() as u32).to_le_bytes());
+            bytes.extend(field.name.as_bytes());
+            for value in &field.values {
+                bytes.extend(value.to_le_bytes());
+            }
+        }
+        let checksum = crc32(&bytes);
+        bytes.extend(checksum.to_le_bytes());
+        bytes
+    }
+
+    /// The frame, or what is wrong with the file.
+    pub(super) fn decode(bytes: &[u8]) -> Result<Self, String> {
+        let body = checked_body(bytes, MAGIC, VERSION)?;
+        let mut reader = ByteReader::new(body, Endian::Little);
+        let header = read_header(&mut reader)?;
+        let short = || "it ends too early for its header".to_string();
+        let positions_length = header.num_vertices.checked_mul(24).ok_or_else(short)?;
+        let coordinates = reader.take(positions_length).ok_or_else(short)?;
+        let mut coordinates = ByteReader::new(coordinates, Endian::Little);
+        let mut positions = Vec::with_capacity(header.num_vertices);
+        while let (Some(x), Some(y), Some(z)) =
+            (coordinates.f64(), coordinates.f64(), coordinates.f64())
+        {
+            positions.push(Vec3::new(x, y, z));
+        }
+        // Counts of fields are not trusted with memory: each field must be in the file before the next is read.
+        let mut read_fields = |count: u32, length: usize| -> Result<Vec<Field>, String> {
+            let mut fields = Vec::new();
+            for _ in 0..count {
+                let name_length = reader.u32().ok_or_else(short)? as usize;
+                let name = reader.take(name_length).ok_or_else(short)?;
+                let name =
+                    str::from_utf8(name).map_err(|_| "a field's name is not UTF-8".to_string())?;
+                let length = length.checked_mul(4).ok_or_else(short)?;
+                let (values, _) = reader.take(length).ok_or_else(short)?.as_chunks::<4>();
+                let values = values
+                    .iter()
+                    .map(|&value| f32::from_le_bytes(value))
+                    .collect();
+                fields.push(Field {
+                    name: name.to_string(),
+                    values,
+                });
+            }
+            Ok(fields)
+        };
+        let vertex_fields = read_fields(header.num_vertex_fields, header.num_vertices)?;
+        let face_fields = read_fields(header.num_face_fields, header.num_faces)?;
+        if reader.remaining() > 0 {
+            return Err(format!(
+                "{} bytes are left over at its end",
+                reader.remaining()
+            ));
+        }
+        let FrameInfo { step, time } = header.info;
+        Ok(Self {
+            step,
+            time,
+            positions,
+            vertex_fields,
+            face_fields,
+        })
+    }
+
+    /// Step and time from the first [`HEADER_LENGTH`] bytes, without checking the rest.
+    pub(super) fn decode_info(bytes: &[u8]) -> Result<FrameInfo, String> {
+        let mut reader = ByteReader::new(bytes, Endian::Little);
+        if reader.take(8) != Some(MAGIC) || reader.u32() != Some(VERSION) {
+            return Err("it does not start as a frame of this version does".to_string());
+        }
+        Ok(read_header(&mut reader)?.info)
+    }
+}
+
+fn read_header(reader: &mut ByteReader) -> Result<Header, String> {
+    let mut read = || {
+        Some(Header {
+            info: FrameInfo {
+                step: reader.u64()?,
+                time: reader.f64()?,
+            },
+            num_vertices: usize::try_from(reader.u64()?).ok()?,
+            num_faces: usize::try_from(reader.u64()?).ok()?,
+            num_vertex_fields: reader.u32()?,
+            num_face_fields: reader.u32()?,
+        })
+    };
+    read().ok_or_else(|| "it ends within the header".to_string())
+}

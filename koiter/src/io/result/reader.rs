@@ -1,0 +1,197 @@
+//! Reading a result folder, also of a run that is still going on.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use super::error::while_trying;
+use super::frame::HEADER_LENGTH;
+use super::{
+    FRAMES, Frame, FrameInfo, Manifest, ResultError, STATS, SUMMARY, TOPOLOGY, frame_path,
+    topology_file,
+};
+
+/// A result folder opened for reading; frames are read when asked for.
+#[derive(Clone, Debug)]
+pub struct ResultReader {
+    folder: PathBuf,
+    manifest: Manifest,
+    faces: Vec<[u32; 3]>,
+    len: usize,
+}
+
+impl ResultReader {
+    /// Reads manifest and topology and counts the frames.
+    ///
+    /// # Errors
+    /// Not a result folder, a newer format, a broken file, a missing frame, a refusal of the system.
+    pub fn open(folder: &Path) -> Result<Self, ResultError> {
+        let manifest = Manifest::read(folder)?;
+        let path = folder.join(TOPOLOGY);
+        let bytes = fs::read(&path).map_err(while_trying("read", &path))?;
+        let broken = |reason| ResultError::Broken {
+            path: path.clone(),
+            reason,
+        };
+        let (num_vertices, faces) = topology_file::decode(&bytes).map_err(broken)?;
+        if num_vertices != manifest.num_vertices() {
+            let expected = manifest.num_vertices();
+            return Err(broken(format!(
+                "it has {num_vertices} vertices, the manifest {expected}"
+            )));
+        }
+        manifest.check(&faces).map_err(broken)?;
+        let len = count_frames(folder)?;
+        Ok(Self {
+            folder: folder.to_path_buf(),
+            manifest,
+            faces,
+            len,
+        })
+    }
+
+    /// What the run was made of.
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// The faces of all parts, by the vertex numbers of the whole.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// Number of frames when the folder was opened or last refreshed.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there is no frame.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Counts the frames again: a run that goes on adds to them.
+    ///
+    /// # Errors
+    /// A missing frame, a refusal of the system.
+    pub fn refresh(&mut self) -> Result<(), ResultError> {
+        self.len = count_frames(&self.folder)?;
+        Ok(())
+    }
+
+    /// Reads and checks frame `index`.
+    ///
+    /// # Errors
+    /// No such frame, a broken file, a refusal of the system.
+    pub fn frame(&self, index: usize) -> Result<Frame, ResultError> {
+        let path = self.existing_frame(index)?;
+        let bytes = fs::read(&path).map_err(while_trying("read", &path))?;
+        let broken = |reason| ResultError::Broken {
+            path: path.clone(),
+            reason,
+        };
+        let frame = Frame::decode(&bytes).map_err(broken)?;
+        frame
+            .check(self.manifest.num_vertices(), self.manifest.num_faces())
+            .map_err(broken)?;
+        Ok(frame)
+    }
+
+    /// Step and time of frame `index`, from its first bytes only.
+    ///
+    /// # Errors
+    /// No such frame, a file that does not start as a frame, a refusal of the system.
+    pub fn frame_info(&self, index: usize) -> Result<FrameInfo, ResultError> {
+        let path = self.existing_frame(index)?;
+        let mut bytes = Vec::with_capacity(HEADER_LENGTH);
+        File::open(&path)
+            .and_then(|file| file.take(HEADER_LENGTH as u64).read_to_end(&mut bytes))
+            .map_err(while_trying("read", &path))?;
+        Frame::decode_info(&bytes).map_err(|reason| ResultError::Broken { path, reason })
+    }
+
+    /// The lines of `stats.jsonl`; a last line that is not complete (the run goes on, or was killed) is left out.
+    ///
+    /// # Errors
+    /// A complete line that is not JSON, a refusal of the system.
+    pub fn stats(&self) -> Result<Vec<serde_json::Value>, ResultError> {
+        let path = self.folder.join(STATS);
+        let Some(bytes) = read_if_there(&path)? else {
+            return Ok(Vec::new());
+        };
+        let lines = bytes
+            .split_inclusive(|&byte| byte == b'\n')
+            .filter(|line| line.ends_with(b"\n"));
+        let mut records = Vec::new();
+        for (number, line) in lines.enumerate() {
+            let record = serde_json::from_slice(line).map_err(|error| {
+                let reason = format!("line {} is not JSON ({error})", number + 1);
+                ResultError::Broken {
+                    path: path.clone(),
+                    reason,
+                }
+            })?;
+            records.push(record);
+        }
+        Ok(records)
+    }
+
+    /// `summary.json`, if the run has ended.
+    ///
+    /// # Errors
+    /// A file that is not JSON, a refusal of the system.
+    pub fn summary(&self) -> Result<Option<serde_json::Value>, ResultError> {
+        let path = self.folder.join(SUMMARY);
+        let Some(bytes) = read_if_there(&path)? else {
+            return Ok(None);
+        };
+        serde_json::from_slice(&bytes)
+            .map(Some)
+            .map_err(|error| ResultError::Broken {
+                path,
+                reason: error.to_string(),
+            })
+    }
+
+    fn existing_frame(&self, index: usize) -> Result<PathBuf, ResultError> {
+        if index < self.len {
+            Ok(frame_path(&self.folder, index))
+        } else {
+            let (len, path) = (self.len, self.folder.clone());
+            Err(ResultError::NoFrame { index, len, path })
+        }
+    }
+}
+
+fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, ResultError> {
+    match fs::read(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(while_trying("read", path)(error)),
+    }
+}
+
+/// Number of frame files; they must be numbered from 0 without gap.
+fn count_frames(folder: &Path) -> Result<usize, ResultError> {
+    let frames = folder.join(FRAMES);
+    let mut indices = Vec::new();
+    for entry in fs::read_dir(&frames).map_err(while_trying("list", &frames))? {
+        let name = entry.map_err(while_trying("list", &frames))?.file_name();
+        let index = name
+            .to_str()
+            .and_then(|name| name.strip_suffix(".bin")?.parse::<usize>().ok());
+        indices.extend(index);
+    }
+    indices.sort_unstable();
+    match indices
+        .iter()
+        .enumerate()
+        .find(|&(expected, &index)| expected != index)
+    {
+        Some((missing, _)) => Err(ResultError::Broken {
+            path: frame_path(folder, missing),
+            reason: "the file is missing, though later frames are there".to_string(),
+        }),
+        None => Ok(indices.len()),
+    }
+}

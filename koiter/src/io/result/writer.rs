@@ -1,0 +1,228 @@
+//! Writing a result folder.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::error::while_trying;
+use super::{
+    FRAMES, Frame, MANIFEST, Manifest, ResultError, ResultReader, STATS, SUMMARY, TOPOLOGY,
+    frame_path, topology_file,
+};
+use crate::io::write_atomically;
+
+/// Other files of a run that belong to the old result when a folder is written anew.
+const COMPANIONS: [&str; 2] = ["checkpoint.bin", "probes.csv"];
+
+/// Writes a result folder, frame by frame.
+#[derive(Debug)]
+pub struct ResultWriter {
+    folder: PathBuf,
+    num_vertices: usize,
+    num_faces: usize,
+    num_frames: usize,
+    stats: File,
+}
+
+impl ResultWriter {
+    /// Starts a result in `folder`, which is created if needed.
+    ///
+    /// `faces` are those of all parts, by the vertex numbers of the whole. A folder that holds an old Koiter result is
+    /// written anew: its frames, `stats.jsonl`, `summary.json`, `checkpoint.bin` and `probes.csv` are deleted first,
+    /// everything else in it stays.
+    ///
+    /// # Errors
+    /// A folder with other content, a manifest that contradicts itself or the faces, a refusal of the system.
+    pub fn create(
+        folder: &Path,
+        manifest: &Manifest,
+        faces: &[[u32; 3]],
+    ) -> Result<Self, ResultError> {
+        manifest
+            .check(faces)
+            .map_err(|reason| ResultError::Invalid {
+                what: "manifest",
+                reason,
+            })?;
+        fs::create_dir_all(folder).map_err(while_trying("create the folder", folder))?;
+        let is_empty = fs::read_dir(folder)
+            .map_err(while_trying("list", folder))?
+            .next()
+            .is_none();
+        if !is_empty {
+            clear_old_result(folder)?;
+        }
+        let frames = folder.join(FRAMES);
+        fs::create_dir_all(&frames).map_err(while_trying("create the folder", &frames))?;
+        // The manifest first: a kill from here on leaves a folder that is known as ours and can be written anew.
+        let path = folder.join(MANIFEST);
+        let json = manifest.to_json().map_err(|source| ResultError::Json {
+            path: path.clone(),
+            source,
+        })?;
+        write_atomically(&path, json.as_bytes()).map_err(while_trying("write", &path))?;
+        let path = folder.join(TOPOLOGY);
+        let bytes = topology_file::encode(manifest.num_vertices(), faces);
+        write_atomically(&path, &bytes).map_err(while_trying("write", &path))?;
+        Self::open_at(folder, manifest, 0)
+    }
+
+    /// Goes on with an interrupted run: keeps the first `frames` frames and `stats` lines of figures, drops the rest.
+    ///
+    /// # Errors
+    /// Not a result, fewer frames or lines than are to be kept, a refusal of the system.
+    pub fn resume(folder: &Path, frames: usize, stats: usize) -> Result<Self, ResultError> {
+        let reader = ResultReader::open(folder)?;
+        if frames > reader.len() {
+            let (index, len) = (frames - 1, reader.len());
+            return Err(ResultError::NoFrame {
+                index,
+                len,
+                path: folder.to_path_buf(),
+            });
+        }
+        for index in (frames..reader.len()).rev() {
+            let path = frame_path(folder, index);
+            fs::remove_file(&path).map_err(while_trying("delete", &path))?;
+        }
+        keep_lines(&folder.join(STATS), stats)?;
+        remove_if_there(&folder.join(SUMMARY))?;
+        Self::open_at(folder, reader.manifest(), frames)
+    }
+
+    fn open_at(folder: &Path, manifest: &Manifest, num_frames: usize) -> Result<Self, ResultError> {
+        let path = folder.join(STATS);
+        let stats = OpenOptions::new().create(true).append(true).open(&path);
+        Ok(Self {
+            folder: folder.to_path_buf(),
+            num_vertices: manifest.num_vertices(),
+            num_faces: manifest.num_faces(),
+            num_frames,
+            stats: stats.map_err(while_trying("open", &path))?,
+        })
+    }
+
+    /// Number of frames written.
+    pub fn num_frames(&self) -> usize {
+        self.num_frames
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Writes the next frame; it is on the disk when this returns.
+    ///
+    /// # Errors
+    /// Wrong lengths, a time or position that is not finite, a refusal of the system.
+    pub fn write_frame(&mut self, frame: &Frame) -> Result<(), ResultError> {
+        frame
+            .check(self.num_vertices, self.num_faces)
+            .map_err(|reason| ResultError::Invalid {
+                what: "frame",
+                reason,
+            })?;
+        let path = frame_path(&self.folder, self.num_frames);
+        let bytes = frame.encode(self.num_faces);
+        write_atomically(&path, &bytes).map_err(while_trying("write", &path))?;
+        self.num_frames += 1;
+        Ok(())
+    }
+
+    /// Appends `record` to `stats.jsonl` as one line. Numbers that are not finite become `null`.
+    ///
+    /// # Errors
+    /// A refusal of the system.
+    pub fn append_stats(&mut self, record: &impl Serialize) -> Result<(), ResultError> {
+        let path = self.folder.join(STATS);
+        let mut line = serde_json::to_string(record).map_err(|source| ResultError::Json {
+            path: path.clone(),
+            source,
+        })?;
+        line.push('\n');
+        // One call, so that readers of a running simulation see whole lines.
+        self.stats
+            .write_all(line.as_bytes())
+            .map_err(while_trying("write", &path))
+    }
+
+    /// Writes `summary.json`.
+    ///
+    /// # Errors
+    /// A refusal of the system.
+    pub fn write_summary(&self, summary: &impl Serialize) -> Result<(), ResultError> {
+        let path = self.folder.join(SUMMARY);
+        let json = serde_json::to_string_pretty(summary).map_err(|source| ResultError::Json {
+            path: path.clone(),
+            source,
+        })?;
+        write_atomically(&path, json.as_bytes()).map_err(while_trying("write", &path))
+    }
+}
+
+/// Deletes what an old result consists of; refuses a folder that is not one. The manifest stays until it is replaced.
+fn clear_old_result(folder: &Path) -> Result<(), ResultError> {
+    match Manifest::read(folder) {
+        // A damaged or newer manifest is still ours.
+        Ok(_) | Err(ResultError::Broken { .. } | ResultError::Version { .. }) => {}
+        Err(ResultError::NotAResult { .. }) => {
+            return Err(ResultError::NotEmpty {
+                path: folder.to_path_buf(),
+            });
+        }
+        Err(error) => return Err(error),
+    }
+    let frames = folder.join(FRAMES);
+    if frames.is_dir() {
+        for entry in fs::read_dir(&frames).map_err(while_trying("list", &frames))? {
+            let path = entry.map_err(while_trying("list", &frames))?.path();
+            if path
+                .extension()
+                .is_some_and(|extension| extension == "bin" || extension == "tmp")
+            {
+                remove_if_there(&path)?;
+            }
+        }
+    }
+    for name in [SUMMARY, STATS, TOPOLOGY].into_iter().chain(COMPANIONS) {
+        remove_if_there(&folder.join(name))?;
+    }
+    Ok(())
+}
+
+fn remove_if_there(path: &Path) -> Result<(), ResultError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            Err(while_trying("delete", path)(error))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Cuts a text file after its first `count` lines; a last line that a kill cut short is no line.
+fn keep_lines(path: &Path, count: usize) -> Result<(), ResultError> {
+    let bytes = match fs::read(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
+        read => read.map_err(while_trying("read", path))?,
+    };
+    let mut lines = bytes
+        .split_inclusive(|&byte| byte == b'\n')
+        .filter(|line| line.ends_with(b"\n"));
+    let mut length = 0;
+    for kept in 0..count {
+        match lines.next() {
+            Some(line) => length += line.len(),
+            None => {
+                let reason = format!("it has {kept} complete lines, {count} are needed to go on");
+                return Err(ResultError::Broken {
+                    path: path.to_path_buf(),
+                    reason,
+                });
+            }
+        }
+    }
+    write_atomically(path, &bytes[..length]).map_err(while_trying("write", path))
+}
