@@ -1,11 +1,18 @@
 //! Thin-shell simulation: see the README.
 #![forbid(unsafe_code)]
 
+pub mod assembly;
+pub mod energy;
+pub mod geometry;
 pub mod integrate;
 #[cfg(feature = "io")]
 pub mod io;
+pub mod material;
 pub mod mesh;
+pub mod rest;
 pub mod scene;
+#[cfg(feature = "testing")]
+pub mod testing;
 
 /// A point or vector in space, in metres unless said otherwise.
 pub type Vec3 = nalgebra::Vector3<f64>;

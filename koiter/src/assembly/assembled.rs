@@ -1,0 +1,177 @@
+//! Any local energy as an energy over all unknowns.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::energy::WorstElement;
+use super::{
+    Dof, DofLayout, Energy, HessianBuilder, LocalEnergy, LocalHessian, NodeId, Pattern, PatternBuilder, PsdProjection,
+    ordered_sum, parallel_map,
+};
+
+/// Elements whose Hessians are held at a time: few enough to stay in the cache, enough to occupy all cores.
+const BATCH: usize = 512;
+
+/// A [`LocalEnergy`] summed over its elements.
+pub struct Assembled<L, const N: usize, const K: usize> {
+    local: L,
+    /// First unknown and node of every local node; `None` where a neighbour is missing.
+    nodes: Vec<[Option<(Dof, NodeId)>; K]>,
+    /// For each element the slots of its `K (K + 1) / 2` blocks, lower triangle by rows.
+    slots: Vec<u32>,
+}
+
+impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
+    /// Gathers the element's nodes once.
+    pub fn new(local: L, layout: &DofLayout) -> Self {
+        let nodes = (0..local.num_stencils())
+            .map(|s| local.nodes(s).map(|dof| dof.map(|dof| (dof, layout.node(dof)))))
+            .collect();
+        Self { local, nodes, slots: Vec::new() }
+    }
+
+    /// The local energy.
+    pub fn local(&self) -> &L {
+        &self.local
+    }
+
+    /// The element's unknowns.
+    pub fn gather(&self, stencil: usize, q: &[f64]) -> SVector<f64, N> {
+        let mut out = SVector::<f64, N>::zeros();
+        let mut row = 0;
+        for (node, size) in self.nodes[stencil].iter().zip(L::NODE_SIZES) {
+            if let Some((dof, _)) = node {
+                let start = dof.0 as usize;
+                out.as_mut_slice()[row..row + size].copy_from_slice(&q[start..start + size]);
+            }
+            row += size;
+        }
+        out
+    }
+
+    fn scatter_gradient(&self, stencil: usize, local: &SVector<f64, N>, gradient: &mut [f64]) {
+        let mut row = 0;
+        for (node, size) in self.nodes[stencil].iter().zip(L::NODE_SIZES) {
+            if let Some((dof, _)) = node {
+                let start = dof.0 as usize;
+                for (g, l) in gradient[start..start + size].iter_mut().zip(&local.as_slice()[row..row + size]) {
+                    *g += l;
+                }
+            }
+            row += size;
+        }
+    }
+
+    fn scatter_hessian(&self, stencil: usize, local: &SMatrix<f64, N, N>, hessian: &mut HessianBuilder<'_>) {
+        let mut starts = [0; K];
+        for k in 1..K {
+            starts[k] = starts[k - 1] + L::NODE_SIZES[k - 1];
+        }
+        let mut slot = stencil * (K * (K + 1) / 2);
+        for (i, node_i) in self.nodes[stencil].iter().enumerate() {
+            for (j, node_j) in self.nodes[stencil][..=i].iter().enumerate() {
+                if let (Some((_, a)), Some((_, b))) = (node_i, node_j) {
+                    let (row, column) = (starts[i], starts[j]);
+                    hessian.add_at(self.slots[slot], *a, *b, i == j, |r, c| local[(row + r, column + c)]);
+                }
+                slot += 1;
+            }
+        }
+    }
+
+    fn evaluate(&self, stencil: usize, q: &[f64], projection: PsdProjection) -> LocalHessian<N> {
+        let local = self.gather(stencil, q);
+        match projection {
+            PsdProjection::Exact => self.local.hessian(stencil, &local),
+            PsdProjection::Clamp => self.local.projected_hessian(stencil, &local),
+        }
+    }
+
+    fn scatter(&self, first: usize, batch: &[LocalHessian<N>], gradient: &mut [f64], hessian: &mut HessianBuilder<'_>) {
+        for (k, local) in batch.iter().enumerate() {
+            self.scatter_gradient(first + k, &local.gradient, gradient);
+            self.scatter_hessian(first + k, &local.hessian, hessian);
+        }
+    }
+}
+
+impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<L, N, K> {
+    fn name(&self) -> &'static str {
+        self.local.name()
+    }
+
+    fn value(&self, q: &[f64]) -> f64 {
+        ordered_sum(self.nodes.len(), |s| self.local.value(s, &self.gather(s, q)))
+    }
+
+    fn add_gradient(&self, q: &[f64], gradient: &mut [f64]) {
+        let locals = parallel_map(self.nodes.len(), |s| self.local.gradient(s, &self.gather(s, q)).1);
+        for (stencil, local) in locals.iter().enumerate() {
+            self.scatter_gradient(stencil, local, gradient);
+        }
+    }
+
+    /// Elements are evaluated in parallel batch by batch and added in order, one batch while the next is evaluated.
+    fn add_derivatives(
+        &self,
+        q: &[f64],
+        projection: PsdProjection,
+        gradient: &mut [f64],
+        hessian: &mut HessianBuilder<'_>,
+    ) {
+        let count = self.nodes.len();
+        let evaluate = |first: usize| {
+            parallel_map(BATCH.min(count.saturating_sub(first)), |k| self.evaluate(first + k, q, projection))
+        };
+        let mut batch = evaluate(0);
+        let mut first = 0;
+        while !batch.is_empty() {
+            #[cfg(feature = "parallel")]
+            let (next, ()) =
+                rayon::join(|| evaluate(first + BATCH), || self.scatter(first, &batch, gradient, hessian));
+            #[cfg(not(feature = "parallel"))]
+            let next = {
+                self.scatter(first, &batch, gradient, hessian);
+                evaluate(first + BATCH)
+            };
+            batch = next;
+            first += BATCH;
+        }
+    }
+
+    fn add_to_pattern(&self, _q: &[f64], pattern: &mut PatternBuilder) {
+        for nodes in &self.nodes {
+            pattern.couple(nodes.iter().flatten().map(|(_, node)| *node));
+        }
+    }
+
+    fn bind(&mut self, pattern: &Pattern) {
+        let per_stencil = K * (K + 1) / 2;
+        let nodes = &self.nodes;
+        self.slots = parallel_map(nodes.len() * per_stencil, |index| {
+            let (stencil, pair) = (index / per_stencil, index % per_stencil);
+            // Row of the pair-th entry of a lower triangle by rows.
+            let i = (((8 * pair + 1) as f64).sqrt() as usize - 1) / 2;
+            let j = pair - i * (i + 1) / 2;
+            match (nodes[stencil][i], nodes[stencil][j]) {
+                (Some((_, a)), Some((_, b))) => pattern.slot(a.max(b), a.min(b)).expect("the element is in the pattern"),
+                _ => u32::MAX,
+            }
+        });
+    }
+
+    fn is_admissible(&self, q: &[f64]) -> bool {
+        (0..self.nodes.len()).all(|s| self.local.is_admissible(s, &self.gather(s, q)))
+    }
+
+    fn worst_element(&self, q: &[f64]) -> Option<WorstElement> {
+        let norms = parallel_map(self.nodes.len(), |s| {
+            let (value, gradient) = self.local.gradient(s, &self.gather(s, q));
+            if value.is_finite() { gradient.norm() } else { f64::NAN }
+        });
+        let worst = match norms.iter().position(|n| !n.is_finite()) {
+            Some(broken) => broken,
+            None => (0..norms.len()).max_by(|&a, &b| norms[a].total_cmp(&norms[b]))?,
+        };
+        Some(WorstElement { description: self.local.describe(worst), gradient_norm: norms[worst] })
+    }
+}

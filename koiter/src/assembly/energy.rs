@@ -1,0 +1,121 @@
+//! What a model author writes, and what the solver sees.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::{Dof, HessianBuilder, Pattern, PatternBuilder, project_to_psd};
+
+/// What to do with negative curvature of an energy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PsdProjection {
+    /// The exact Hessian.
+    Exact,
+    /// A positive semidefinite approximation, element by element.
+    #[default]
+    Clamp,
+}
+
+/// Value, gradient and Hessian of one element.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalHessian<const N: usize> {
+    /// Energy [J].
+    pub value: f64,
+    /// Derivatives by the element's unknowns.
+    pub gradient: SVector<f64, N>,
+    /// Second derivatives; symmetric.
+    pub hessian: SMatrix<f64, N, N>,
+}
+
+impl<const N: usize> LocalHessian<N> {
+    /// All zero.
+    pub fn zero() -> Self {
+        Self { value: 0.0, gradient: SVector::zeros(), hessian: SMatrix::zeros() }
+    }
+}
+
+/// An energy that is a sum over elements of a few unknowns each: Φ(q) = Σ_s φ_s(q_s).
+///
+/// `N` unknowns in `K` nodes of sizes [`Self::NODE_SIZES`]. A node may be absent (no neighbour across a boundary edge);
+/// its entries of `q` are then 0 and its derivatives are ignored.
+pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
+    /// Unknowns of each local node; they sum to `N`.
+    const NODE_SIZES: [usize; K];
+    /// Name in reports.
+    fn name(&self) -> &'static str;
+    /// Number of elements.
+    fn num_stencils(&self) -> usize;
+    /// First unknown of each node of an element.
+    fn nodes(&self, stencil: usize) -> [Option<Dof>; K];
+    /// φ_s [J].
+    fn value(&self, stencil: usize, q: &SVector<f64, N>) -> f64;
+    /// φ_s and its gradient.
+    fn gradient(&self, stencil: usize, q: &SVector<f64, N>) -> (f64, SVector<f64, N>);
+    /// φ_s with gradient and the true Hessian.
+    fn hessian(&self, stencil: usize, q: &SVector<f64, N>) -> LocalHessian<N>;
+    /// φ_s with gradient and a positive semidefinite approximation of the Hessian. Energies that know the small space in
+    /// which their Hessian is indefinite override this; the default decomposes the whole matrix.
+    fn projected_hessian(&self, stencil: usize, q: &SVector<f64, N>) -> LocalHessian<N> {
+        let mut local = self.hessian(stencil, q);
+        project_to_psd(&mut local.hessian);
+        local
+    }
+    /// Whether φ_s is defined at `q`.
+    fn is_admissible(&self, _stencil: usize, _q: &SVector<f64, N>) -> bool {
+        true
+    }
+    /// The element in the user's terms.
+    fn describe(&self, stencil: usize) -> String;
+}
+
+/// The element of an energy that resists most, for reports.
+#[derive(Clone, Debug)]
+pub struct WorstElement {
+    /// The element in the user's terms.
+    pub description: String,
+    /// Norm of its gradient [N or N·m]; not finite if the energy is not.
+    pub gradient_norm: f64,
+}
+
+/// An energy over all unknowns, as solver and integrator see it.
+pub trait Energy: Send + Sync {
+    /// Name in reports.
+    fn name(&self) -> &'static str;
+    /// Called before a minimisation starts at `q`: contact finds its candidates here.
+    fn prepare(&mut self, _q: &[f64]) {}
+    /// Φ(q) [J].
+    fn value(&self, q: &[f64]) -> f64;
+    /// Adds ∇Φ(q).
+    fn add_gradient(&self, q: &[f64], gradient: &mut [f64]);
+    /// Adds ∇Φ(q) and ∇²Φ(q).
+    fn add_derivatives(
+        &self,
+        q: &[f64],
+        projection: PsdProjection,
+        gradient: &mut [f64],
+        hessian: &mut HessianBuilder<'_>,
+    );
+    /// Registers the pairs of nodes that the Hessian couples at `q`.
+    fn add_to_pattern(&self, _q: &[f64], _pattern: &mut PatternBuilder) {}
+    /// Whether the pairs of nodes depend on `q`.
+    fn has_changing_pattern(&self) -> bool {
+        false
+    }
+    /// Looks up the positions of its entries in a new pattern.
+    fn bind(&mut self, _pattern: &Pattern) {}
+    /// The largest fraction of `direction` that may be taken from `q`, at most 1. What lies between stays valid: contact
+    /// keeps the candidates of the whole way for the evaluations of the line search.
+    fn max_step(&mut self, _q: &[f64], _direction: &[f64]) -> f64 {
+        1.0
+    }
+    /// Whether Φ is defined at `q`.
+    fn is_admissible(&self, _q: &[f64]) -> bool {
+        true
+    }
+    /// The element that resists most at `q`.
+    fn worst_element(&self, _q: &[f64]) -> Option<WorstElement> {
+        None
+    }
+    /// What limited the last step, in the user's terms.
+    fn step_limiter(&self) -> Option<String> {
+        None
+    }
+}

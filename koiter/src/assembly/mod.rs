@@ -1,0 +1,19 @@
+//! From local energies to one sum over all unknowns: the only gather and scatter.
+//!
+//! A model author writes a [`LocalEnergy`] over a few unknowns; [`Assembled`] makes it an [`Energy`], which is all that
+//! the solver sees. Second derivatives go into a [`SymmetricMatrix`] of fixed pattern. Sums are formed in an order that
+//! does not depend on the number of threads, so results are the same bits on one core and on many.
+
+mod assembled;
+mod dof;
+mod energy;
+mod matrix;
+mod parallel;
+mod projection;
+
+pub use assembled::Assembled;
+pub use dof::{Dof, DofLayout, NodeId};
+pub use energy::{Energy, LocalEnergy, LocalHessian, PsdProjection, WorstElement};
+pub use matrix::{CoupledPairs, HessianBuilder, Pattern, PatternBuilder, SymmetricMatrix};
+pub use parallel::{ordered_sum, parallel_map};
+pub use projection::project_to_psd;

@@ -1,0 +1,17 @@
+//! Formulas on a few points, with first and second derivatives.
+//!
+//! Sign and index conventions, once for the whole library (pinned by `tests/conventions.rs`):
+//! - faces are counter-clockwise; the normal of face `(i, j, k)` is `(x_j − x_i) × (x_k − x_i)`, normalised;
+//! - corner `c` of a face is opposite edge `c`, which runs from corner `c + 1` to corner `c + 2` (mod 3);
+//! - the hinge angle θ of an edge is the signed turning angle of the normals: 0 when flat, positive where the normals
+//!   fan out (a sphere with outward normals), in (−π, π); 0 on boundary edges;
+//! - the sign ε of an edge in a face is +1 if the face traverses it from the smaller to the larger vertex index;
+//! - the tilt of the director of an edge, seen from a face, is ζ = θ/2 + ε α with the edge angle α.
+
+mod closest;
+mod jet;
+mod wing;
+
+pub use closest::{ClosestPoints, edge_edge, point_edge, point_triangle};
+pub use jet::{Jet, Real};
+pub use wing::{Wing, hinge_angle};
