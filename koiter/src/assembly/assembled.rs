@@ -4,8 +4,8 @@ use nalgebra::{SMatrix, SVector};
 
 use super::energy::WorstElement;
 use super::{
-    Dof, DofLayout, Energy, HessianBuilder, LocalEnergy, LocalHessian, NodeId, Pattern, PatternBuilder, PsdProjection,
-    ordered_sum, parallel_map,
+    Dof, DofLayout, Energy, HessianBuilder, LocalEnergy, LocalHessian, NodeId, Pattern,
+    PatternBuilder, PsdProjection, ordered_sum, parallel_map,
 };
 
 /// Elements whose Hessians are held at a time: few enough to stay in the cache, enough to occupy all cores.
@@ -24,9 +24,17 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
     /// Gathers the element's nodes once.
     pub fn new(local: L, layout: &DofLayout) -> Self {
         let nodes = (0..local.num_stencils())
-            .map(|s| local.nodes(s).map(|dof| dof.map(|dof| (dof, layout.node(dof)))))
+            .map(|s| {
+                local
+                    .nodes(s)
+                    .map(|dof| dof.map(|dof| (dof, layout.node(dof))))
+            })
             .collect();
-        Self { local, nodes, slots: Vec::new() }
+        Self {
+            local,
+            nodes,
+            slots: Vec::new(),
+        }
     }
 
     /// The local energy.
@@ -53,7 +61,10 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
         for (node, size) in self.nodes[stencil].iter().zip(L::NODE_SIZES) {
             if let Some((dof, _)) = node {
                 let start = dof.0 as usize;
-                for (g, l) in gradient[start..start + size].iter_mut().zip(&local.as_slice()[row..row + size]) {
+                for (g, l) in gradient[start..start + size]
+                    .iter_mut()
+                    .zip(&local.as_slice()[row..row + size])
+                {
                     *g += l;
                 }
             }
@@ -61,7 +72,12 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
         }
     }
 
-    fn scatter_hessian(&self, stencil: usize, local: &SMatrix<f64, N, N>, hessian: &mut HessianBuilder<'_>) {
+    fn scatter_hessian(
+        &self,
+        stencil: usize,
+        local: &SMatrix<f64, N, N>,
+        hessian: &mut HessianBuilder<'_>,
+    ) {
         let mut starts = [0; K];
         for k in 1..K {
             starts[k] = starts[k - 1] + L::NODE_SIZES[k - 1];
@@ -71,7 +87,9 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
             for (j, node_j) in self.nodes[stencil][..=i].iter().enumerate() {
                 if let (Some((_, a)), Some((_, b))) = (node_i, node_j) {
                     let (row, column) = (starts[i], starts[j]);
-                    hessian.add_at(self.slots[slot], *a, *b, i == j, |r, c| local[(row + r, column + c)]);
+                    hessian.add_at(self.slots[slot], *a, *b, i == j, |r, c| {
+                        local[(row + r, column + c)]
+                    });
                 }
                 slot += 1;
             }
@@ -86,7 +104,13 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
         }
     }
 
-    fn scatter(&self, first: usize, batch: &[LocalHessian<N>], gradient: &mut [f64], hessian: &mut HessianBuilder<'_>) {
+    fn scatter(
+        &self,
+        first: usize,
+        batch: &[LocalHessian<N>],
+        gradient: &mut [f64],
+        hessian: &mut HessianBuilder<'_>,
+    ) {
         for (k, local) in batch.iter().enumerate() {
             self.scatter_gradient(first + k, &local.gradient, gradient);
             self.scatter_hessian(first + k, &local.hessian, hessian);
@@ -100,11 +124,15 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
     }
 
     fn value(&self, q: &[f64]) -> f64 {
-        ordered_sum(self.nodes.len(), |s| self.local.value(s, &self.gather(s, q)))
+        ordered_sum(self.nodes.len(), |s| {
+            self.local.value(s, &self.gather(s, q))
+        })
     }
 
     fn add_gradient(&self, q: &[f64], gradient: &mut [f64]) {
-        let locals = parallel_map(self.nodes.len(), |s| self.local.gradient(s, &self.gather(s, q)).1);
+        let locals = parallel_map(self.nodes.len(), |s| {
+            self.local.gradient(s, &self.gather(s, q)).1
+        });
         for (stencil, local) in locals.iter().enumerate() {
             self.scatter_gradient(stencil, local, gradient);
         }
@@ -120,14 +148,18 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
     ) {
         let count = self.nodes.len();
         let evaluate = |first: usize| {
-            parallel_map(BATCH.min(count.saturating_sub(first)), |k| self.evaluate(first + k, q, projection))
+            parallel_map(BATCH.min(count.saturating_sub(first)), |k| {
+                self.evaluate(first + k, q, projection)
+            })
         };
         let mut batch = evaluate(0);
         let mut first = 0;
         while !batch.is_empty() {
             #[cfg(feature = "parallel")]
-            let (next, ()) =
-                rayon::join(|| evaluate(first + BATCH), || self.scatter(first, &batch, gradient, hessian));
+            let (next, ()) = rayon::join(
+                || evaluate(first + BATCH),
+                || self.scatter(first, &batch, gradient, hessian),
+            );
             #[cfg(not(feature = "parallel"))]
             let next = {
                 self.scatter(first, &batch, gradient, hessian);
@@ -153,7 +185,9 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
             let i = (((8 * pair + 1) as f64).sqrt() as usize - 1) / 2;
             let j = pair - i * (i + 1) / 2;
             match (nodes[stencil][i], nodes[stencil][j]) {
-                (Some((_, a)), Some((_, b))) => pattern.slot(a.max(b), a.min(b)).expect("the element is in the pattern"),
+                (Some((_, a)), Some((_, b))) => pattern
+                    .slot(a.max(b), a.min(b))
+                    .expect("the element is in the pattern"),
                 _ => u32::MAX,
             }
         });
@@ -166,12 +200,19 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
     fn worst_element(&self, q: &[f64]) -> Option<WorstElement> {
         let norms = parallel_map(self.nodes.len(), |s| {
             let (value, gradient) = self.local.gradient(s, &self.gather(s, q));
-            if value.is_finite() { gradient.norm() } else { f64::NAN }
+            if value.is_finite() {
+                gradient.norm()
+            } else {
+                f64::NAN
+            }
         });
         let worst = match norms.iter().position(|n| !n.is_finite()) {
             Some(broken) => broken,
             None => (0..norms.len()).max_by(|&a, &b| norms[a].total_cmp(&norms[b]))?,
         };
-        Some(WorstElement { description: self.local.describe(worst), gradient_norm: norms[worst] })
+        Some(WorstElement {
+            description: self.local.describe(worst),
+            gradient_norm: norms[worst],
+        })
     }
 }

@@ -22,12 +22,19 @@ pub struct DofLayout {
 impl DofLayout {
     /// An empty layout.
     pub fn new() -> Self {
-        Self { starts: vec![0], node_of_dof: Vec::new(), num_solved: 0 }
+        Self {
+            starts: vec![0],
+            node_of_dof: Vec::new(),
+            num_solved: 0,
+        }
     }
 
     /// Appends `count` nodes of `size` unknowns each and returns the first unknown of the first one.
     pub fn push_nodes(&mut self, count: usize, size: usize, solved: bool) -> Dof {
-        assert!(!solved || self.num_solved == self.num_nodes(), "solved nodes come before prescribed ones");
+        assert!(
+            !solved || self.num_solved == self.num_nodes(),
+            "solved nodes come before prescribed ones"
+        );
         let first = self.num_dofs() as u32;
         for _ in 0..count {
             let node = self.num_nodes() as u32;

@@ -28,7 +28,11 @@ pub struct LocalHessian<const N: usize> {
 impl<const N: usize> LocalHessian<N> {
     /// All zero.
     pub fn zero() -> Self {
-        Self { value: 0.0, gradient: SVector::zeros(), hessian: SMatrix::zeros() }
+        Self {
+            value: 0.0,
+            gradient: SVector::zeros(),
+            hessian: SMatrix::zeros(),
+        }
     }
 }
 

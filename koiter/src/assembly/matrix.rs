@@ -45,7 +45,10 @@ pub struct CoupledPairs(Vec<u64>);
 impl CoupledPairs {
     /// Whether every pair of `other` is among these.
     pub fn contains_all(&self, other: &Self) -> bool {
-        other.0.iter().all(|pair| self.0.binary_search(pair).is_ok())
+        other
+            .0
+            .iter()
+            .all(|pair| self.0.binary_search(pair).is_ok())
     }
 
     /// Number of pairs.
@@ -77,7 +80,9 @@ impl CoupledPairs {
 
     /// Column and row node of each pair; the column is the smaller.
     pub fn iter(&self) -> impl Iterator<Item = (NodeId, NodeId)> + '_ {
-        self.0.iter().map(|&pair| (NodeId((pair >> 32) as u32), NodeId(pair as u32)))
+        self.0
+            .iter()
+            .map(|&pair| (NodeId((pair >> 32) as u32), NodeId(pair as u32)))
     }
 }
 
@@ -132,7 +137,8 @@ impl Pattern {
             pattern.first_column_length.push(rows.len() as u32);
             for column in 0..pattern.node_size(node) {
                 pattern.row_index.extend_from_slice(&rows[column..]);
-                let end = u32::try_from(pattern.row_index.len()).expect("the matrix has fewer than 2^32 entries");
+                let end = u32::try_from(pattern.row_index.len())
+                    .expect("the matrix has fewer than 2^32 entries");
                 pattern.column_start.push(end);
             }
         }
@@ -169,6 +175,11 @@ impl Pattern {
         &self.row_index
     }
 
+    /// Positions of the diagonal entries.
+    pub fn diagonal_positions(&self) -> &[u32] {
+        &self.column_start[..self.num_rows()]
+    }
+
     /// First unknown of each node, with one past the last.
     pub fn node_starts(&self) -> &[u32] {
         &self.node_start
@@ -189,7 +200,10 @@ impl Pattern {
         }
         let index = self.coupled(column).binary_search(&row.0).ok()?;
         let block = self.block_start[column.0 as usize] as usize + index;
-        Some(self.column_start[self.node_start[column.0 as usize] as usize] + self.block_offset[block])
+        Some(
+            self.column_start[self.node_start[column.0 as usize] as usize]
+                + self.block_offset[block],
+        )
     }
 }
 
@@ -223,7 +237,10 @@ impl SymmetricMatrix {
         for c in 0..columns {
             let start = slot as usize + c * length - c * (c + 1) / 2;
             let first = if diagonal { c } else { 0 };
-            for (r, value) in self.values[start + first..start + rows].iter_mut().enumerate() {
+            for (r, value) in self.values[start + first..start + rows]
+                .iter_mut()
+                .enumerate()
+            {
                 *value += entry(r + first, c);
             }
         }
@@ -234,9 +251,13 @@ impl SymmetricMatrix {
     pub fn fix(&mut self, is_fixed: &[bool], step: &[f64], rhs: &mut [f64]) {
         let pattern = Arc::clone(&self.pattern);
         for column in 0..pattern.num_rows() {
-            let range = pattern.column_start[column] as usize..pattern.column_start[column + 1] as usize;
+            let range =
+                pattern.column_start[column] as usize..pattern.column_start[column + 1] as usize;
             let mut moved = 0.0;
-            for (value, &row) in self.values[range.clone()].iter_mut().zip(&pattern.row_index[range]) {
+            for (value, &row) in self.values[range.clone()]
+                .iter_mut()
+                .zip(&pattern.row_index[range])
+            {
                 let row = row as usize;
                 if row == column {
                     if is_fixed[column] {
@@ -265,8 +286,12 @@ impl SymmetricMatrix {
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         for column in 0..self.pattern.num_rows() {
-            let range = self.pattern.column_start[column] as usize..self.pattern.column_start[column + 1] as usize;
-            for (value, &row) in self.values[range.clone()].iter().zip(&self.pattern.row_index[range]) {
+            let range = self.pattern.column_start[column] as usize
+                ..self.pattern.column_start[column + 1] as usize;
+            for (value, &row) in self.values[range.clone()]
+                .iter()
+                .zip(&self.pattern.row_index[range])
+            {
                 let row = row as usize;
                 y[row] += value * x[column];
                 if row != column {
@@ -275,11 +300,6 @@ impl SymmetricMatrix {
             }
         }
         y
-    }
-
-    /// Positions of the diagonal entries.
-    pub fn diagonal_positions(&self) -> &[u32] {
-        &self.pattern.column_start[..self.pattern.num_rows()]
     }
 }
 
@@ -299,13 +319,23 @@ impl HessianBuilder<'_> {
     /// Adds the block of nodes `a` and `b` with local entries `(i in a, j in b)`; called once for each unordered pair of
     /// different local nodes and once for each node with itself. Two local nodes may be the same node.
     #[inline]
-    pub fn add(&mut self, a: NodeId, b: NodeId, same_local_node: bool, entry: impl Fn(usize, usize) -> f64) {
+    pub fn add(
+        &mut self,
+        a: NodeId,
+        b: NodeId,
+        same_local_node: bool,
+        entry: impl Fn(usize, usize) -> f64,
+    ) {
         let (size_a, size_b) = (self.layout.size(a), self.layout.size(b));
         let solved = self.layout.num_solved_nodes() as u32;
         match (a.0 < solved, b.0 < solved) {
             (true, true) => {
                 let (row, column) = (a.max(b), a.min(b));
-                let slot = self.matrix.pattern.slot(row, column).expect("coupled nodes were registered");
+                let slot = self
+                    .matrix
+                    .pattern
+                    .slot(row, column)
+                    .expect("coupled nodes were registered");
                 self.add_at(slot, a, b, same_local_node, entry);
             }
             (true, false) => self.add_coupling(a, b, size_a, size_b, &entry),
@@ -326,14 +356,20 @@ impl HessianBuilder<'_> {
     ) {
         let (size_a, size_b) = (self.layout.size(a), self.layout.size(b));
         if a > b {
-            self.matrix.add_block(slot, b, [size_a, size_b], false, entry);
+            self.matrix
+                .add_block(slot, b, [size_a, size_b], false, entry);
         } else if a < b {
-            self.matrix.add_block(slot, a, [size_b, size_a], false, |r, c| entry(c, r));
+            self.matrix
+                .add_block(slot, a, [size_b, size_a], false, |r, c| entry(c, r));
         } else if same_local_node {
-            self.matrix.add_block(slot, a, [size_a, size_a], true, entry);
+            self.matrix
+                .add_block(slot, a, [size_a, size_a], true, entry);
         } else {
             // The node occurs twice in the element: both symmetric blocks fall on the diagonal block.
-            self.matrix.add_block(slot, a, [size_a, size_a], true, |r, c| entry(r, c) + entry(c, r));
+            self.matrix
+                .add_block(slot, a, [size_a, size_a], true, |r, c| {
+                    entry(r, c) + entry(c, r)
+                });
         }
     }
 
@@ -377,8 +413,12 @@ mod tests {
         let mut matrix = SymmetricMatrix::zeros(pattern);
         let mut dense = nalgebra::DMatrix::<f64>::zeros(11, 11);
         let mut coupling = vec![0.0; 11];
-        let mut builder =
-            HessianBuilder { matrix: &mut matrix, layout: &layout, prescribed_step: &[1.0, 0.0, 2.0], coupling: &mut coupling };
+        let mut builder = HessianBuilder {
+            matrix: &mut matrix,
+            layout: &layout,
+            prescribed_step: &[1.0, 0.0, 2.0],
+            coupling: &mut coupling,
+        };
         let entry = |i: usize, j: usize| 1.0 + i as f64 + 10.0 * j as f64;
         for (a, b) in [(2, 0), (0, 3), (3, 2), (4, 1)] {
             builder.add(NodeId(a), NodeId(b), false, entry);

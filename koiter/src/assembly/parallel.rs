@@ -8,7 +8,11 @@ pub fn parallel_map<T: Send>(count: usize, f: impl Fn(usize) -> T + Sync + Send)
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;
-        (0..count).into_par_iter().with_min_len(CHUNK.min(32)).map(f).collect()
+        (0..count)
+            .into_par_iter()
+            .with_min_len(CHUNK.min(32))
+            .map(f)
+            .collect()
     }
     #[cfg(not(feature = "parallel"))]
     {
@@ -18,7 +22,11 @@ pub fn parallel_map<T: Send>(count: usize, f: impl Fn(usize) -> T + Sync + Send)
 
 /// Σ f(i) for `i` in `0..count`: partial sums of fixed chunks, added in order.
 pub fn ordered_sum(count: usize, f: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
-    let chunk_sum = |chunk: usize| (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).map(&f).sum::<f64>();
+    let chunk_sum = |chunk: usize| {
+        (chunk * CHUNK..((chunk + 1) * CHUNK).min(count))
+            .map(&f)
+            .sum::<f64>()
+    };
     let num_chunks = count.div_ceil(CHUNK);
     #[cfg(feature = "parallel")]
     {

@@ -13,7 +13,8 @@ pub fn project_to_psd<const N: usize>(matrix: &mut SMatrix<f64, N, N>) {
     }
     let eigen = DMatrix::from_column_slice(N, N, matrix.as_slice()).symmetric_eigen();
     let clamped = DVector::from_fn(N, |i, _| eigen.eigenvalues[i].max(0.0));
-    let rebuilt = &eigen.eigenvectors * DMatrix::from_diagonal(&clamped) * eigen.eigenvectors.transpose();
+    let rebuilt =
+        &eigen.eigenvectors * DMatrix::from_diagonal(&clamped) * eigen.eigenvectors.transpose();
     matrix.copy_from_slice(rebuilt.as_slice());
 }
 

@@ -31,7 +31,13 @@ pub struct ClosestPoints {
 impl ClosestPoints {
     fn fixed(weights: [f64; 4], separation: Vec3) -> Self {
         let distance_squared = separation.norm_squared();
-        Self { weights, separation, distance_squared, slides: [(Vec3::zeros(), [0.0; 4]); 2], num_slides: 0 }
+        Self {
+            weights,
+            separation,
+            distance_squared,
+            slides: [(Vec3::zeros(), [0.0; 4]); 2],
+            num_slides: 0,
+        }
     }
 
     /// Adds a free parameter with `tangent` = ∂r/∂u and `weights` = ∂w/∂u. Directions that are parallel to an earlier
@@ -69,7 +75,8 @@ pub fn point_edge(p: &Vec3, a: &Vec3, b: &Vec3) -> ClosestPoints {
     } else if u >= 1.0 {
         ClosestPoints::fixed([1.0, 0.0, -1.0, 0.0], p - b)
     } else {
-        ClosestPoints::fixed([1.0, u - 1.0, -u, 0.0], p - a - along * u).slide(-along, [0.0, 1.0, -1.0, 0.0])
+        ClosestPoints::fixed([1.0, u - 1.0, -u, 0.0], p - a - along * u)
+            .slide(-along, [0.0, 1.0, -1.0, 0.0])
     }
 }
 
@@ -85,7 +92,9 @@ fn embed(pair: ClosestPoints, slots: [usize; 3], sign: f64) -> ClosestPoints {
     ClosestPoints {
         weights: place(&pair.weights),
         separation: pair.separation * sign,
-        slides: pair.slides.map(|(tangent, weights)| (tangent * sign, place(&weights))),
+        slides: pair
+            .slides
+            .map(|(tangent, weights)| (tangent * sign, place(&weights))),
         ..pair
     }
 }
@@ -105,7 +114,10 @@ pub fn point_triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> ClosestPoints {
     }
     // Outside the prism over the face (or a face without area): the closest point is on the rim.
     let mut best = embed(point_edge(p, a, b), [0, 1, 2], 1.0);
-    for (pair, slots) in [(point_edge(p, b, c), [0, 2, 3]), (point_edge(p, c, a), [0, 3, 1])] {
+    for (pair, slots) in [
+        (point_edge(p, b, c), [0, 2, 3]),
+        (point_edge(p, c, a), [0, 3, 1]),
+    ] {
         if pair.distance_squared < best.distance_squared {
             best = embed(pair, slots, 1.0);
         }
@@ -154,7 +166,9 @@ mod tests {
                 let identity = if i % 3 == j % 3 { 1.0 } else { 0.0 };
                 *entry = 2.0 * pair.weights[i / 3] * pair.weights[j / 3] * identity;
                 for (t, v) in pair.slides() {
-                    let g = |k: usize| pair.weights[k / 3] * t[k % 3] + v[k / 3] * pair.separation[k % 3];
+                    let g = |k: usize| {
+                        pair.weights[k / 3] * t[k % 3] + v[k / 3] * pair.separation[k % 3]
+                    };
                     *entry -= 2.0 * g(i) * g(j);
                 }
             }
@@ -175,12 +189,17 @@ mod tests {
                 closest(&y)
             };
             let (plus, minus) = (moved(h), moved(-h));
-            let gradient = |pair: &ClosestPoints, k: usize| 2.0 * pair.weights[k / 3] * pair.separation[k % 3];
+            let gradient =
+                |pair: &ClosestPoints, k: usize| 2.0 * pair.weights[k / 3] * pair.separation[k % 3];
             let difference = (plus.distance_squared - minus.distance_squared) / (2.0 * h);
             assert!((gradient(&pair, i) - difference).abs() < 1e-8);
             for j in 0..12 {
                 let difference = (gradient(&plus, j) - gradient(&minus, j)) / (2.0 * h);
-                assert!((hessian[i][j] - difference).abs() < 1e-7, "{i} {j}: {} {difference}", hessian[i][j]);
+                assert!(
+                    (hessian[i][j] - difference).abs() < 1e-7,
+                    "{i} {j}: {} {difference}",
+                    hessian[i][j]
+                );
             }
         }
     }
@@ -218,8 +237,12 @@ mod tests {
     #[test]
     fn parallel_edges_have_the_distance_of_their_lines() {
         let v = Vec3::new;
-        let pair =
-            edge_edge(&v(0.0, 0.0, 0.0), &v(1.0, 0.0, 0.0), &v(0.25, 0.0, 0.5), &v(0.75, 0.0, 0.5));
+        let pair = edge_edge(
+            &v(0.0, 0.0, 0.0),
+            &v(1.0, 0.0, 0.0),
+            &v(0.25, 0.0, 0.5),
+            &v(0.75, 0.0, 0.5),
+        );
         assert!((pair.distance_squared - 0.25).abs() < 1e-15);
     }
 }

@@ -78,7 +78,11 @@ impl<const N: usize> Jet<N> {
 
     /// The second derivative with respect to variables `i` and `j`.
     pub fn hessian(&self, i: usize, j: usize) -> f64 {
-        if i >= j { self.hessian[i][j] } else { self.hessian[j][i] }
+        if i >= j {
+            self.hessian[i][j]
+        } else {
+            self.hessian[j][i]
+        }
     }
 
     /// `f(self)` for a function with value `f0` and derivatives `f1`, `f2` here.
@@ -87,7 +91,8 @@ impl<const N: usize> Jet<N> {
         for i in 0..N {
             out.gradient[i] = f1 * self.gradient[i];
             for j in 0..=i {
-                out.hessian[i][j] = f1 * self.hessian[i][j] + f2 * self.gradient[i] * self.gradient[j];
+                out.hessian[i][j] =
+                    f1 * self.hessian[i][j] + f2 * self.gradient[i] * self.gradient[j];
             }
         }
         out
@@ -113,7 +118,11 @@ impl<const N: usize> Jet<N> {
 
 impl<const N: usize> From<f64> for Jet<N> {
     fn from(value: f64) -> Self {
-        Self { value, gradient: [0.0; N], hessian: [[0.0; N]; N] }
+        Self {
+            value,
+            gradient: [0.0; N],
+            hessian: [[0.0; N]; N],
+        }
     }
 }
 
@@ -134,7 +143,15 @@ impl<const N: usize> Sub for Jet<N> {
 impl<const N: usize> Mul for Jet<N> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        self.combine(&other, self.value * other.value, other.value, self.value, 0.0, 1.0, 0.0)
+        self.combine(
+            &other,
+            self.value * other.value,
+            other.value,
+            self.value,
+            0.0,
+            1.0,
+            0.0,
+        )
     }
 }
 
@@ -144,7 +161,15 @@ impl<const N: usize> Div for Jet<N> {
         let inverse = 1.0 / other.value;
         let ratio = self.value * inverse;
         let square = inverse * inverse;
-        self.combine(&other, ratio, inverse, -ratio * inverse, 0.0, -square, 2.0 * ratio * square)
+        self.combine(
+            &other,
+            ratio,
+            inverse,
+            -ratio * inverse,
+            0.0,
+            -square,
+            2.0 * ratio * square,
+        )
     }
 }
 

@@ -14,4 +14,4 @@ mod wing;
 
 pub use closest::{ClosestPoints, edge_edge, point_edge, point_triangle};
 pub use jet::{Jet, Real};
-pub use wing::{Wing, hinge_angle};
+pub use wing::{Wing, WingFunctional, hinge_angle};

@@ -49,7 +49,14 @@ impl Wing {
         let perpendicular = arm - edge * projection;
         let height = perpendicular.norm();
         let altitude = perpendicular / height;
-        Self { edge, altitude, normal: edge.cross(&altitude), length, height, foot: projection / length }
+        Self {
+            edge,
+            altitude,
+            normal: edge.cross(&altitude),
+            length,
+            height,
+            foot: projection / length,
+        }
     }
 
     #[inline]
@@ -98,7 +105,10 @@ impl Wing {
 /// Hinge angle of the edge shared by two wings, each with its own traversal of the edge: in (−π, π], 0 when flat.
 #[inline]
 pub fn hinge_angle(wing: &Wing, neighbor: &Wing) -> f64 {
-    wing.normal.cross(&neighbor.normal).dot(&wing.edge).atan2(wing.normal.dot(&neighbor.normal))
+    wing.normal
+        .cross(&neighbor.normal)
+        .dot(&wing.edge)
+        .atan2(wing.normal.dot(&neighbor.normal))
 }
 
 #[cfg(test)]
@@ -106,7 +116,12 @@ mod tests {
     use super::*;
     use crate::geometry::{Jet, Real};
 
-    const POINTS: [[f64; 3]; 4] = [[0.1, -0.2, 0.05], [1.3, 0.2, -0.3], [0.4, 0.9, 0.35], [0.7, -1.1, 0.4]];
+    const POINTS: [[f64; 3]; 4] = [
+        [0.1, -0.2, 0.05],
+        [1.3, 0.2, -0.3],
+        [0.4, 0.9, 0.35],
+        [0.7, -1.1, 0.4],
+    ];
 
     fn functional(f: &WingFunctional, slots: [usize; 3]) -> [f64; 12] {
         let mut out = [0.0; 12];
@@ -122,8 +137,13 @@ mod tests {
     fn by_definition<R: Real>(x: &[[R; 3]; 4]) -> (R, R) {
         let sub = |p: &[R; 3], q: &[R; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
         let dot = |p: &[R; 3], q: &[R; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-        let cross =
-            |p: &[R; 3], q: &[R; 3]| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+        let cross = |p: &[R; 3], q: &[R; 3]| {
+            [
+                p[1] * q[2] - p[2] * q[1],
+                p[2] * q[0] - p[0] * q[2],
+                p[0] * q[1] - p[1] * q[0],
+            ]
+        };
         let e = sub(&x[1], &x[0]);
         let length = dot(&e, &e).sqrt();
         let n0 = cross(&e, &sub(&x[2], &x[0]));
@@ -136,31 +156,52 @@ mod tests {
     #[test]
     fn first_and_second_derivatives_agree_with_jets() {
         let v: Vec<Vec3> = POINTS.iter().map(|p| Vec3::new(p[0], p[1], p[2])).collect();
-        let wings = [Wing::new(&v[0], &v[1], &v[2]), Wing::new(&v[1], &v[0], &v[3])];
+        let wings = [
+            Wing::new(&v[0], &v[1], &v[2]),
+            Wing::new(&v[1], &v[0], &v[3]),
+        ];
         let slots = [[0, 1, 2], [1, 0, 3]];
-        let jets: [[Jet<12>; 3]; 4] =
-            std::array::from_fn(|i| std::array::from_fn(|k| Jet::variable(POINTS[i][k], 3 * i + k)));
+        let jets: [[Jet<12>; 3]; 4] = std::array::from_fn(|i| {
+            std::array::from_fn(|k| Jet::variable(POINTS[i][k], 3 * i + k))
+        });
         let (height, theta) = by_definition(&jets);
         assert!((height.value() - wings[0].height).abs() < 1e-14);
         assert!((theta.value() - hinge_angle(&wings[0], &wings[1])).abs() < 1e-14);
-        let turning: Vec<_> = (0..2).map(|i| functional(&wings[i].turning(), slots[i])).collect();
-        let stretching: Vec<_> = (0..2).map(|i| functional(&wings[i].stretching(), slots[i])).collect();
-        let sliding: Vec<_> = (0..2).map(|i| functional(&wings[i].sliding(), slots[i])).collect();
-        let tilting: Vec<_> = (0..2).map(|i| functional(&wings[i].tilting(), slots[i])).collect();
-        let swinging: Vec<_> = (0..2).map(|i| functional(&wings[i].swinging(), slots[i])).collect();
-        let pair = |u: &[f64; 12], v: &[f64; 12], i: usize, j: usize| 0.5 * (u[i] * v[j] + u[j] * v[i]);
+        let turning: Vec<_> = (0..2)
+            .map(|i| functional(&wings[i].turning(), slots[i]))
+            .collect();
+        let stretching: Vec<_> = (0..2)
+            .map(|i| functional(&wings[i].stretching(), slots[i]))
+            .collect();
+        let sliding: Vec<_> = (0..2)
+            .map(|i| functional(&wings[i].sliding(), slots[i]))
+            .collect();
+        let tilting: Vec<_> = (0..2)
+            .map(|i| functional(&wings[i].tilting(), slots[i]))
+            .collect();
+        let swinging: Vec<_> = (0..2)
+            .map(|i| functional(&wings[i].swinging(), slots[i]))
+            .collect();
+        let pair =
+            |u: &[f64; 12], v: &[f64; 12], i: usize, j: usize| 0.5 * (u[i] * v[j] + u[j] * v[i]);
         for i in 0..12 {
             assert!((height.gradient()[i] - wings[0].height * stretching[0][i]).abs() < 1e-13);
             assert!((theta.gradient()[i] + turning[0][i] + turning[1][i]).abs() < 1e-13);
             for j in 0..12 {
                 let shear = |f: usize, k: usize| sliding[f][k] + swinging[f][k];
                 let h2 = wings[0].height
-                    * (turning[0][i] * turning[0][j] + sliding[0][i] * sliding[0][j] - shear(0, i) * shear(0, j));
-                assert!((height.hessian(i, j) - h2).abs() < 1e-12, "altitude {i} {j}");
+                    * (turning[0][i] * turning[0][j] + sliding[0][i] * sliding[0][j]
+                        - shear(0, i) * shear(0, j));
+                assert!(
+                    (height.hessian(i, j) - h2).abs() < 1e-12,
+                    "altitude {i} {j}"
+                );
                 let mut t2 = 0.0;
                 for f in 0..2 {
-                    let twice: [f64; 12] = std::array::from_fn(|k| 2.0 * sliding[f][k] + swinging[f][k]);
-                    t2 += 2.0 * pair(&turning[f], &stretching[f], i, j) + pair(&tilting[f], &twice, i, j);
+                    let twice: [f64; 12] =
+                        std::array::from_fn(|k| 2.0 * sliding[f][k] + swinging[f][k]);
+                    t2 += 2.0 * pair(&turning[f], &stretching[f], i, j)
+                        + pair(&tilting[f], &twice, i, j);
                 }
                 assert!((theta.hessian(i, j) - t2).abs() < 1e-12, "angle {i} {j}");
             }

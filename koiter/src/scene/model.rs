@@ -154,7 +154,12 @@ pub struct ContactOptions {
 
 impl Default for ContactOptions {
     fn default() -> Self {
-        Self { enabled: true, d_hat: None, kappa: None, friction_speed: 1e-3 }
+        Self {
+            enabled: true,
+            d_hat: None,
+            kappa: None,
+            friction_speed: 1e-3,
+        }
     }
 }
 
@@ -171,7 +176,11 @@ pub struct SolverOptions {
 
 impl Default for SolverOptions {
     fn default() -> Self {
-        Self { velocity_tolerance: 1e-3, displacement_tolerance: 1e-7, max_iterations: 200 }
+        Self {
+            velocity_tolerance: 1e-3,
+            displacement_tolerance: 1e-7,
+            max_iterations: 200,
+        }
     }
 }
 

@@ -1,0 +1,408 @@
+//! Koiter bending with mid-edge directors: DCS, DSO and BAC in one implementation.
+//!
+//! ```text
+//! E = (h³/12) Ā w(κ),    κ = D⁻ᵀ II D⁻¹ − b̄,    II = [[q₀ + q₁, q₀], [q₀, q₀ + q₂]],    q_c = 2 a_c g(ζ_c)
+//! ζ_c = θ_c / 2 + ε_c α_c
+//! ```
+//!
+//! h thickness [m], Ā rest area [m²], w density of the material [Pa], D rest edges ([`RestFrame`]), b̄ rest second
+//! fundamental form in the same frame [1/m], a_c altitude over edge c [m], θ_c hinge angle, α_c edge angle, ε_c sign of
+//! the edge in the face, g the profile: sin (DCS), identity (DSO), tan (BAC). Boundary edges have θ = 0 and a free α.
+//! Reference: "Better Bending" (2026), Eqs. (30), (31), (48); `2 a = 4 A / ℓ` there.
+//!
+//! The unknowns are the corners, the opposite vertices of the three neighbours, and the three edge angles. The Hessian
+//! is `Jᵀ Q J + Σ σ_c ∇²q_c` with J = ∂q, Q the material's tangent and σ_c = ∂E/∂q_c; with the functionals of the two
+//! wings of an edge (own: N T M Ψ K, neighbour's: primed)
+//!
+//! ```text
+//! q'' / 2a = g (N² + M² − (M + K)²) + g' T (2 ε α − N') + g'' ζ'² + g' (Ψ (M + K/2) + N' T' + Ψ' (M' + K'/2))
+//! ```
+//!
+//! where each term has a closed positive part ([`super::quadratic_form`]).
+
+use std::marker::PhantomData;
+
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+
+use super::hinge::turning_angle;
+use super::profile::AngleProfile;
+use super::quadratic_form::{Functional, QuadraticForm, WIDTH, WingFunctionals, dot, scaled_sum};
+use crate::Vec3;
+use crate::assembly::{Dof, LocalEnergy, LocalHessian};
+use crate::geometry::{Real, Wing, hinge_angle};
+use crate::material::Material;
+use crate::mesh::{FaceId, TriMesh};
+use crate::rest::RestFrame;
+
+/// Place of the edge angle among the unknowns of a hinge.
+const ANGLE: usize = 12;
+
+/// The unknowns of one face.
+#[derive(Clone, Copy, Debug)]
+pub struct BendingStencil {
+    /// The corners.
+    pub corners: [Dof; 3],
+    /// The vertex across each edge, if there is a neighbour.
+    pub across: [Option<Dof>; 3],
+    /// The angle of each edge.
+    pub angles: [Dof; 3],
+    /// ε of each edge.
+    pub signs: [f64; 3],
+}
+
+/// Stencils of all faces, for vertices of three unknowns from `first_vertex` on and edge angles from `first_edge` on.
+pub fn bending_stencils(mesh: &TriMesh, first_vertex: Dof, first_edge: Dof) -> Vec<BendingStencil> {
+    let vertex = |v: u32| Dof(first_vertex.0 + 3 * v);
+    (0..mesh.num_faces())
+        .map(|face| {
+            let edges = mesh.face_edges()[face];
+            let signs: [f64; 3] = std::array::from_fn(|c| mesh.edge_sign(FaceId(face as u32), c));
+            BendingStencil {
+                corners: mesh.faces()[face].map(vertex),
+                across: std::array::from_fn(|c| {
+                    // The first side of an edge is the face with sign +1, so the neighbour is on the other one.
+                    let side = if signs[c] > 0.0 { 1 } else { 0 };
+                    mesh.opposite_vertex(edges[c], side).map(|v| vertex(v.0))
+                }),
+                angles: edges.map(|e| Dof(first_edge.0 + e.0)),
+                signs,
+            }
+        })
+        .collect()
+}
+
+/// One edge of a face with what its curvature needs.
+struct Corner {
+    wing: Wing,
+    neighbor: Option<Wing>,
+    profile: [f64; 3],
+    sign: f64,
+}
+
+impl Corner {
+    /// q_c.
+    fn curvature(&self) -> f64 {
+        2.0 * self.wing.height * self.profile[0]
+    }
+
+    /// ζ' and the functionals of both wings.
+    fn tilt_change(&self, own: &Functional, other: Option<&Functional>) -> Functional {
+        let mut out = [0.0; WIDTH];
+        if let Some(other) = other {
+            out = std::array::from_fn(|i| -0.5 * (own[i] + other[i]));
+        }
+        out[ANGLE] = self.sign;
+        out
+    }
+}
+
+/// Koiter bending energy of one shell with profile `P`.
+pub struct MidEdgeBending<P, M> {
+    stencils: Vec<BendingStencil>,
+    frames: Vec<RestFrame>,
+    rest_forms: Vec<Vector3<f64>>,
+    thickness: f64,
+    material: M,
+    profile: PhantomData<P>,
+}
+
+impl<P: AngleProfile, M: Material> MidEdgeBending<P, M> {
+    /// `rest_forms` are b̄ in the frames of the faces, components `11, 22, 12` [1/m].
+    pub fn new(
+        stencils: Vec<BendingStencil>,
+        frames: Vec<RestFrame>,
+        rest_forms: Vec<Vector3<f64>>,
+        thickness: f64,
+        material: M,
+    ) -> Self {
+        Self {
+            stencils,
+            frames,
+            rest_forms,
+            thickness,
+            material,
+            profile: PhantomData,
+        }
+    }
+
+    /// Replaces b̄ of every face.
+    pub fn set_rest_forms(&mut self, rest_forms: Vec<Vector3<f64>>) {
+        self.rest_forms = rest_forms;
+    }
+
+    /// The second fundamental form in the rest frame, components `11, 22, 12` [1/m].
+    pub fn second_form(&self, stencil: usize, q: &SVector<f64, 21>) -> Vector3<f64> {
+        let curvatures = self.corners(stencil, q).map(|c| c.curvature());
+        self.form_matrix(stencil) * Vector3::from(curvatures)
+    }
+
+    /// The tilts of the three directors.
+    pub fn tilts(&self, stencil: usize, q: &SVector<f64, 21>) -> [f64; 3] {
+        std::array::from_fn(|c| self.tilt(stencil, c, q).0)
+    }
+
+    /// Sum over the two faces of an edge of Ā |∂d/∂ζ|² / 3: times ρ h³/12 the inertia of the edge angle (Eq. 52).
+    pub fn director_inertia(&self, stencil: usize, q: &SVector<f64, 21>) -> [f64; 3] {
+        self.tilts(stencil, q)
+            .map(|tilt| self.frames[stencil].area / 3.0 * P::director_stretch_squared(tilt))
+    }
+
+    fn form_matrix(&self, stencil: usize) -> Matrix3<f64> {
+        let rows = self.frames[stencil].second_form_matrix();
+        Matrix3::from_fn(|i, j| rows[i][j])
+    }
+
+    fn weight(&self, stencil: usize) -> f64 {
+        self.thickness.powi(3) / 12.0 * self.frames[stencil].area
+    }
+
+    fn tilt(&self, stencil: usize, c: usize, q: &SVector<f64, 21>) -> (f64, Wing, Option<Wing>) {
+        let point = |i: usize| Vec3::new(q[3 * i], q[3 * i + 1], q[3 * i + 2]);
+        let (a, b) = (point((c + 1) % 3), point((c + 2) % 3));
+        let wing = Wing::new(&a, &b, &point(c));
+        let stencil = &self.stencils[stencil];
+        let neighbor = stencil.across[c].map(|_| Wing::new(&b, &a, &point(3 + c)));
+        let theta = neighbor
+            .as_ref()
+            .map_or(0.0, |other| hinge_angle(&wing, other));
+        (0.5 * theta + stencil.signs[c] * q[18 + c], wing, neighbor)
+    }
+
+    fn corners(&self, stencil: usize, q: &SVector<f64, 21>) -> [Corner; 3] {
+        std::array::from_fn(|c| {
+            let (tilt, wing, neighbor) = self.tilt(stencil, c, q);
+            Corner {
+                wing,
+                neighbor,
+                profile: P::eval(tilt),
+                sign: self.stencils[stencil].signs[c],
+            }
+        })
+    }
+
+    /// Energy, ∂E/∂q and ∂²E/∂q².
+    fn response(&self, stencil: usize, corners: &[Corner; 3]) -> (f64, Vector3<f64>, Matrix3<f64>) {
+        let form = self.form_matrix(stencil);
+        let curvatures = Vector3::from_fn(|c, _| corners[c].curvature());
+        let response = self
+            .material
+            .response(stencil, &(form * curvatures - self.rest_forms[stencil]));
+        let weight = self.weight(stencil);
+        let transposed = form.transpose() * weight;
+        (
+            response.density * weight,
+            transposed * response.stress,
+            transposed * response.tangent * form,
+        )
+    }
+
+    fn derivatives(&self, stencil: usize, q: &SVector<f64, 21>, clamp: bool) -> LocalHessian<21> {
+        let corners = self.corners(stencil, q);
+        let (value, moments, tangent) = self.response(stencil, &corners);
+        let mut hessian = SMatrix::<f64, 21, 21>::zeros();
+        let mut jacobian = [[0.0; 21]; 3];
+        for (c, corner) in corners.iter().enumerate() {
+            let places = places(c);
+            let (slope, form) = corner_form(corner, moments[c], clamp);
+            let used = if corner.neighbor.is_some() {
+                0..ANGLE + 1
+            } else {
+                0..9
+            };
+            let scatter = |i: usize, j: usize, hessian: &mut SMatrix<f64, 21, 21>| {
+                hessian[(places[i], places[j])] += form.rows[j][i];
+            };
+            for j in used.clone() {
+                jacobian[c][places[j]] = slope[j];
+                for i in used.clone() {
+                    scatter(i, j, &mut hessian);
+                }
+            }
+            if corner.neighbor.is_none() {
+                jacobian[c][places[ANGLE]] = slope[ANGLE];
+                scatter(ANGLE, ANGLE, &mut hessian);
+                for i in used {
+                    scatter(i, ANGLE, &mut hessian);
+                    scatter(ANGLE, i, &mut hessian);
+                }
+            }
+        }
+        let mut gradient = SVector::<f64, 21>::zeros();
+        for (c, row) in jacobian.iter().enumerate() {
+            let image: [f64; 21] =
+                std::array::from_fn(|i| (0..3).map(|d| tangent[(c, d)] * jacobian[d][i]).sum());
+            for j in 0..21 {
+                gradient[j] += moments[c] * row[j];
+                let mut column = hessian.column_mut(j);
+                for (entry, value) in column.iter_mut().zip(&image) {
+                    *entry += value * row[j];
+                }
+            }
+        }
+        LocalHessian {
+            value,
+            gradient,
+            hessian,
+        }
+    }
+
+    /// E of one face over any numbers for a St. Venant–Kirchhoff material: the oracle of the tests.
+    pub fn formula<R: Real>(
+        &self,
+        stencil: usize,
+        q: &[R; 21],
+        lame_alpha: f64,
+        lame_beta: f64,
+    ) -> R {
+        let face = &self.stencils[stencil];
+        let point = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
+        let norm = |v: [R; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+        let sub = |p: [R; 3], q: [R; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+        let curvature: [R; 3] = std::array::from_fn(|c| {
+            let (a, b, apex) = (point((c + 1) % 3), point((c + 2) % 3), point(c));
+            let (e, f) = (sub(b, a), sub(apex, a));
+            let twice_area = norm([
+                e[1] * f[2] - e[2] * f[1],
+                e[2] * f[0] - e[0] * f[2],
+                e[0] * f[1] - e[1] * f[0],
+            ]);
+            let theta = match face.across[c] {
+                Some(_) => turning_angle(&[a, b, apex, point(3 + c)]),
+                None => R::from(0.0),
+            };
+            let tilt = theta * 0.5 + q[18 + c] * face.signs[c];
+            twice_area / norm(e) * P::formula(tilt) * 2.0
+        });
+        let rows = self.frames[stencil].second_form_matrix();
+        let strain: [R; 3] = std::array::from_fn(|s| {
+            curvature[0] * rows[s][0] + curvature[1] * rows[s][1] + curvature[2] * rows[s][2]
+                - self.rest_forms[stencil][s]
+        });
+        let trace = strain[0] + strain[1];
+        let square = strain[0] * strain[0] + strain[1] * strain[1] + strain[2] * strain[2] * 2.0;
+        (trace * trace * (0.5 * lame_alpha) + square * lame_beta) * self.weight(stencil)
+    }
+}
+
+/// Where the unknowns of the hinge at corner `c` stand among those of the face.
+fn places(c: usize) -> [usize; 13] {
+    let nodes = [(c + 1) % 3, (c + 2) % 3, c, 3 + c];
+    std::array::from_fn(|i| {
+        if i == ANGLE {
+            18 + c
+        } else {
+            3 * nodes[i / 3] + i % 3
+        }
+    })
+}
+
+/// ∂q_c and `moment` · ∂²q_c over the unknowns of the hinge.
+fn corner_form(corner: &Corner, moment: f64, clamp: bool) -> (Functional, QuadraticForm) {
+    let [g, g1, g2] = corner.profile;
+    let twice_height = 2.0 * corner.wing.height;
+    let own = WingFunctionals::new(&corner.wing, [0, 1, 2]);
+    let other = corner
+        .neighbor
+        .as_ref()
+        .map(|wing| WingFunctionals::new(wing, [1, 0, 3]));
+    let tilt_change = corner.tilt_change(&own.turning, other.as_ref().map(|w| &w.turning));
+    let slope =
+        std::array::from_fn(|i| twice_height * (g * own.stretching[i] + g1 * tilt_change[i]));
+    let mut form = QuadraticForm::zero(clamp);
+    let k = moment * twice_height;
+    own.add_altitude(k * g, &mut form);
+    form.add_square(k * g2, &tilt_change);
+    let mut partner = [0.0; WIDTH];
+    partner[ANGLE] = 2.0 * corner.sign;
+    if let Some(other) = &other {
+        partner = scaled_sum(&partner, &other.turning, -1.0);
+        if clamp {
+            // In a fold the neighbour's normal leaves that of the face, so N' and T are not orthogonal, as the closed
+            // positive part of a product needs: split off the square of T.
+            let along = dot(&partner, &own.stretching) / dot(&own.stretching, &own.stretching);
+            form.add_square(k * g1 * along, &own.stretching);
+            partner = scaled_sum(&partner, &own.stretching, -along);
+        }
+        form.add_product(
+            k * g1,
+            &own.tilting,
+            &scaled_sum(&own.sliding, &own.swinging, 0.5),
+        );
+        other.add_angle(0.5 * k * g1, &mut form);
+    }
+    form.add_product(k * g1, &own.stretching, &partner);
+    (slope, form)
+}
+
+impl<P: AngleProfile, M: Material> LocalEnergy<21, 9> for MidEdgeBending<P, M> {
+    const NODE_SIZES: [usize; 9] = [3, 3, 3, 3, 3, 3, 1, 1, 1];
+
+    fn name(&self) -> &'static str {
+        "bending"
+    }
+
+    fn num_stencils(&self) -> usize {
+        self.stencils.len()
+    }
+
+    fn nodes(&self, stencil: usize) -> [Option<Dof>; 9] {
+        let s = &self.stencils[stencil];
+        let [a, b, c] = s.corners.map(Some);
+        let [d, e, f] = s.across;
+        let [g, h, i] = s.angles.map(Some);
+        [a, b, c, d, e, f, g, h, i]
+    }
+
+    fn value(&self, stencil: usize, q: &SVector<f64, 21>) -> f64 {
+        let corners = self.corners(stencil, q);
+        self.response(stencil, &corners).0
+    }
+
+    fn gradient(&self, stencil: usize, q: &SVector<f64, 21>) -> (f64, SVector<f64, 21>) {
+        let corners = self.corners(stencil, q);
+        let (value, moments, _) = self.response(stencil, &corners);
+        let mut gradient = SVector::<f64, 21>::zeros();
+        for (c, corner) in corners.iter().enumerate() {
+            let [g, g1, _] = corner.profile;
+            let scale = 2.0 * corner.wing.height * moments[c];
+            let nodes = [(c + 1) % 3, (c + 2) % 3, c, 3 + c];
+            let mut add = |node: usize, v: &Vec3, factor: f64| {
+                let mut part = gradient.fixed_rows_mut::<3>(3 * node);
+                part += v * factor;
+            };
+            for (i, v) in corner.wing.stretching().iter().enumerate() {
+                add(nodes[i], v, scale * g);
+            }
+            if let Some(neighbor) = &corner.neighbor {
+                for (i, v) in corner.wing.turning().iter().enumerate() {
+                    add(nodes[i], v, -0.5 * scale * g1);
+                }
+                for (v, i) in neighbor.turning().iter().zip([1, 0, 3]) {
+                    add(nodes[i], v, -0.5 * scale * g1);
+                }
+            }
+            gradient[18 + c] += scale * g1 * corner.sign;
+        }
+        (value, gradient)
+    }
+
+    fn hessian(&self, stencil: usize, q: &SVector<f64, 21>) -> LocalHessian<21> {
+        self.derivatives(stencil, q, false)
+    }
+
+    fn projected_hessian(&self, stencil: usize, q: &SVector<f64, 21>) -> LocalHessian<21> {
+        self.derivatives(stencil, q, true)
+    }
+
+    fn is_admissible(&self, stencil: usize, q: &SVector<f64, 21>) -> bool {
+        P::MAX_TILT.is_infinite()
+            || self
+                .tilts(stencil, q)
+                .iter()
+                .all(|tilt| tilt.abs() < P::MAX_TILT)
+    }
+
+    fn describe(&self, stencil: usize) -> String {
+        format!("face {stencil}")
+    }
+}

@@ -1,0 +1,10 @@
+//! Bending models.
+
+mod hinge;
+mod mid_edge;
+mod profile;
+mod quadratic_form;
+
+pub use hinge::DiscreteShellsHinge;
+pub use mid_edge::{BendingStencil, MidEdgeBending, bending_stencils};
+pub use profile::{AngleProfile, Identity, Sine, Tangent};

@@ -1,0 +1,11 @@
+//! Local energies: one file, one model. Each opens with its formula, symbols, units, source and limits.
+
+mod gravity;
+mod inertia;
+mod membrane;
+
+pub mod bending;
+
+pub use gravity::Gravity;
+pub use inertia::Inertia;
+pub use membrane::Membrane;

@@ -1,0 +1,298 @@
+//! Every energy passes the conformance suite; a planted error does not.
+
+use koiter::Vec3;
+use koiter::assembly::{Assembled, Dof, DofLayout, Energy, LocalEnergy, LocalHessian};
+use koiter::energy::Membrane;
+use koiter::energy::bending::{
+    AngleProfile, DiscreteShellsHinge, Identity, MidEdgeBending, Sine, Tangent, bending_stencils,
+};
+use koiter::material::StVenantKirchhoff;
+use koiter::mesh::{Surface, TriMesh};
+use koiter::rest::{RestFrame, rest_frames};
+use koiter::testing::{Claims, check};
+use nalgebra::{SVector, Vector3};
+
+const THICKNESS: f64 = 0.3;
+
+struct Setup {
+    rest: Surface,
+    layout: DofLayout,
+    edges: Dof,
+    frames: Vec<RestFrame>,
+    q: Vec<f64>,
+    at_rest: Vec<f64>,
+}
+
+/// A bent patch: an inner vertex of valence 3 (its face stencils hold a vertex twice), one of valence 5, a boundary.
+fn setup_with(positions: Vec<Vec3>, faces: Vec<[u32; 3]>) -> Setup {
+    let rest =
+        Surface::from_mesh(TriMesh::new(positions.len(), faces).unwrap(), positions).unwrap();
+    let mut layout = DofLayout::new();
+    layout.push_nodes(rest.mesh.num_vertices(), 3, true);
+    let edges = layout.push_nodes(rest.mesh.num_edges(), 1, true);
+    let mut at_rest: Vec<f64> = rest
+        .positions
+        .iter()
+        .flat_map(|x| [x.x, x.y, x.z])
+        .collect();
+    let num_positions = at_rest.len();
+    at_rest.resize(layout.num_dofs(), 0.0);
+    let amplitude = |i: usize| if i < num_positions { 0.08 } else { 0.2 };
+    let q = at_rest
+        .iter()
+        .enumerate()
+        .map(|(i, x)| x + amplitude(i) * ((i * 7 + 1) as f64 * 1.3).sin())
+        .collect();
+    let frames = rest_frames(&rest).unwrap();
+    Setup {
+        rest,
+        layout,
+        edges,
+        frames,
+        q,
+        at_rest,
+    }
+}
+
+fn patch(height: f64) -> Setup {
+    let points = [
+        [0.0, 0.0, 0.1],
+        [1.0, -0.1, 0.0],
+        [0.45, 0.9, 0.05],
+        [0.5, 0.3, 0.25],
+        [-0.6, 0.8, -0.1],
+        [0.5, -0.8, -0.15],
+        [1.4, 0.8, -0.2],
+    ];
+    let faces = vec![
+        [0, 1, 3],
+        [1, 2, 3],
+        [2, 0, 3],
+        [0, 2, 4],
+        [1, 0, 5],
+        [2, 1, 6],
+    ];
+    setup_with(
+        points
+            .iter()
+            .map(|p| Vec3::new(p[0], p[1], height * p[2]))
+            .collect(),
+        faces,
+    )
+}
+
+fn material() -> StVenantKirchhoff {
+    StVenantKirchhoff::new(2.0, 0.3)
+}
+
+fn membrane(s: &Setup) -> Membrane<StVenantKirchhoff> {
+    Membrane::new(
+        &s.rest.mesh,
+        Dof(0),
+        s.frames.clone(),
+        THICKNESS,
+        material(),
+    )
+}
+
+fn hinge(s: &Setup, curved: bool) -> DiscreteShellsHinge {
+    DiscreteShellsHinge::new(&s.rest, Dof(0), &s.frames, curved, 0.7)
+}
+
+fn mid_edge<P: AngleProfile>(s: &Setup, curved: bool) -> MidEdgeBending<P, StVenantKirchhoff> {
+    let stencils = bending_stencils(&s.rest.mesh, Dof(0), s.edges);
+    let zero = vec![Vector3::zeros(); s.rest.mesh.num_faces()];
+    let mut bending =
+        MidEdgeBending::<P, _>::new(stencils, s.frames.clone(), zero, THICKNESS, material());
+    if curved {
+        let gathered = Assembled::new(mid_edge::<P>(s, false), &s.layout);
+        let form = |f| bending.second_form(f, &gathered.gather(f, &s.at_rest));
+        let forms = (0..s.rest.mesh.num_faces()).map(form).collect();
+        bending.set_rest_forms(forms);
+    }
+    bending
+}
+
+fn claims(s: &Setup, at_rest: bool) -> Claims {
+    Claims {
+        rigid_motion_invariant: true,
+        rest: at_rest.then(|| s.at_rest.clone()),
+    }
+}
+
+fn check_mid_edge<P: AngleProfile>() {
+    let (s, m) = (patch(1.0), material());
+    for curved in [false, true] {
+        let formula =
+            |e: &MidEdgeBending<P, _>, f: usize, q: &_| e.formula(f, q, m.lame_alpha, m.lame_beta);
+        check(
+            mid_edge::<P>(&s, curved),
+            &s.layout,
+            &s.q,
+            formula,
+            &claims(&s, curved),
+        )
+        .unwrap();
+    }
+}
+
+#[test]
+fn bac_conforms() {
+    check_mid_edge::<Tangent>();
+}
+
+#[test]
+fn dcs_conforms() {
+    check_mid_edge::<Sine>();
+}
+
+#[test]
+fn dso_conforms() {
+    check_mid_edge::<Identity>();
+}
+
+#[test]
+fn the_hinge_conforms() {
+    let s = patch(1.0);
+    for curved in [false, true] {
+        check(
+            hinge(&s, curved),
+            &s.layout,
+            &s.q,
+            |e, h, q| e.formula(h, q),
+            &claims(&s, curved),
+        )
+        .unwrap();
+    }
+}
+
+#[test]
+fn the_membrane_conforms() {
+    let (s, m) = (patch(1.0), material());
+    let formula = |e: &Membrane<_>, f: usize, q: &_| e.formula(f, q, m.lame_alpha, m.lame_beta);
+    check(membrane(&s), &s.layout, &s.q, formula, &claims(&s, true)).unwrap();
+}
+
+/// A membrane with one wrong entry in its gradient or in its Hessian.
+struct Planted {
+    honest: Membrane<StVenantKirchhoff>,
+    in_gradient: bool,
+}
+
+impl LocalEnergy<9, 3> for Planted {
+    const NODE_SIZES: [usize; 3] = [3; 3];
+    fn name(&self) -> &'static str {
+        "planted"
+    }
+    fn num_stencils(&self) -> usize {
+        self.honest.num_stencils()
+    }
+    fn nodes(&self, stencil: usize) -> [Option<Dof>; 3] {
+        self.honest.nodes(stencil)
+    }
+    fn value(&self, stencil: usize, q: &SVector<f64, 9>) -> f64 {
+        self.honest.value(stencil, q)
+    }
+    fn gradient(&self, stencil: usize, q: &SVector<f64, 9>) -> (f64, SVector<f64, 9>) {
+        let (value, mut gradient) = self.honest.gradient(stencil, q);
+        if self.in_gradient {
+            gradient[4] *= 1.0 + 1e-6;
+        }
+        (value, gradient)
+    }
+    fn hessian(&self, stencil: usize, q: &SVector<f64, 9>) -> LocalHessian<9> {
+        let mut local = self.honest.hessian(stencil, q);
+        if !self.in_gradient {
+            local.hessian[(2, 7)] += 1e-6;
+        }
+        local
+    }
+    fn describe(&self, stencil: usize) -> String {
+        self.honest.describe(stencil)
+    }
+}
+
+#[test]
+fn a_planted_error_is_caught() {
+    let (s, m) = (patch(1.0), material());
+    let formula = |e: &Planted, f: usize, q: &_| e.honest.formula(f, q, m.lame_alpha, m.lame_beta);
+    for (in_gradient, property) in [
+        (true, "gradient equals that of dual numbers"),
+        (false, "Hessian equals that of dual numbers"),
+    ] {
+        let planted = Planted {
+            honest: membrane(&s),
+            in_gradient,
+        };
+        let violation = check(planted, &s.layout, &s.q, formula, &Claims::default()).unwrap_err();
+        assert_eq!(violation.property, property);
+    }
+}
+
+#[test]
+fn energies_do_not_depend_on_the_numbering() {
+    let s = patch(1.0);
+    let n = s.rest.mesh.num_vertices() as u32;
+    let renamed = |v: u32| (v * 3 + 2) % n;
+    let faces: Vec<_> = s
+        .rest
+        .mesh
+        .faces()
+        .iter()
+        .map(|f| [f[1], f[2], f[0]].map(renamed))
+        .collect();
+    let mut positions = s.rest.positions.clone();
+    let mut q = s.q.clone();
+    for v in 0..n {
+        positions[renamed(v) as usize] = s.rest.positions[v as usize];
+        for axis in 0..3 {
+            q[(3 * renamed(v)) as usize + axis] = s.q[(3 * v) as usize + axis];
+        }
+    }
+    let mut other = setup_with(positions, faces);
+    // The sign of an edge angle belongs to the order of its vertices.
+    for (edge, [u, v]) in s.rest.mesh.edges().iter().enumerate() {
+        let (a, b) = (renamed(*u), renamed(*v));
+        let target = other
+            .rest
+            .mesh
+            .edges()
+            .iter()
+            .position(|&e| e == [a.min(b), a.max(b)])
+            .unwrap();
+        let angles = 3 * n as usize;
+        q[angles + target] = if a < b {
+            s.q[angles + edge]
+        } else {
+            -s.q[angles + edge]
+        };
+    }
+    other.q = q;
+    let energies = |s: &Setup| -> [Box<dyn Energy>; 3] {
+        [
+            Box::new(Assembled::new(mid_edge::<Tangent>(s, false), &s.layout)),
+            Box::new(Assembled::new(hinge(s, true), &s.layout)),
+            Box::new(Assembled::new(membrane(s), &s.layout)),
+        ]
+    };
+    for (first, second) in energies(&s).iter().zip(&energies(&other)) {
+        let (a, b) = (first.value(&s.q), second.value(&other.q));
+        assert!((a - b).abs() < 1e-12 * a.abs(), "{}: {a} {b}", first.name());
+    }
+}
+
+#[test]
+fn director_models_share_their_hessian_at_a_flat_rest_state() {
+    let s = patch(0.0);
+    for f in 0..s.rest.mesh.num_faces() {
+        let gathered =
+            Assembled::new(mid_edge::<Tangent>(&s, false), &s.layout).gather(f, &s.at_rest);
+        let bac = mid_edge::<Tangent>(&s, false).hessian(f, &gathered).hessian;
+        let dcs = mid_edge::<Sine>(&s, false).hessian(f, &gathered).hessian;
+        let dso = mid_edge::<Identity>(&s, false)
+            .hessian(f, &gathered)
+            .hessian;
+        assert!(bac.norm() > 0.0);
+        assert!((bac - dcs).norm() < 1e-14 * bac.norm() && (bac - dso).norm() < 1e-14 * bac.norm());
+    }
+}
