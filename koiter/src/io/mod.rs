@@ -6,6 +6,8 @@
 mod atomic_file;
 mod bytes;
 mod checksum;
+pub mod read;
 pub mod result;
 
 pub use atomic_file::write_atomically;
+pub use read::{RawMesh, ReadError, read_mesh};

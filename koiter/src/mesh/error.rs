@@ -143,3 +143,47 @@ pub enum MeshError {
         vertices: usize,
     },
 }
+
+impl MeshError {
+    /// The face at fault, if the error is about one; the first one of several.
+    pub fn face(&self) -> Option<usize> {
+        match self {
+            Self::IndexOutOfRange { face, .. }
+            | Self::RepeatedIndex { face, .. }
+            | Self::DegenerateFace { face, .. } => Some(*face),
+            Self::DuplicateFace { faces, .. }
+            | Self::InconsistentOrientation { faces, .. }
+            | Self::NotOrientable { faces, .. }
+            | Self::NonManifoldVertex { faces, .. } => Some(faces[0]),
+            Self::NonManifoldEdge { faces, .. } => faces.first().copied(),
+            _ => None,
+        }
+    }
+
+    /// The same error about vertices that had other numbers before: `old_index[new]`.
+    pub(super) fn renumbered(mut self, old_index: &[u32]) -> Self {
+        let restore = |v: &mut u32| *v = old_index[*v as usize];
+        match &mut self {
+            Self::RepeatedIndex {
+                vertex, corners, ..
+            } => {
+                restore(vertex);
+                corners.iter_mut().for_each(restore);
+            }
+            Self::DuplicateFace { vertices, .. } => vertices.iter_mut().for_each(restore),
+            Self::NonManifoldEdge { edge, .. }
+            | Self::InconsistentOrientation { edge, .. }
+            | Self::NotOrientable { edge, .. } => edge.iter_mut().for_each(restore),
+            Self::NonManifoldVertex { vertex, .. } => restore(vertex),
+            Self::DegenerateFace { corners, .. } => corners.iter_mut().for_each(restore),
+            Self::NotFinite { vertex, .. } => *vertex = old_index[*vertex] as usize,
+            // The others name no vertex, or are found before vertices are renumbered.
+            Self::Empty
+            | Self::TooLarge { .. }
+            | Self::IndexOutOfRange { .. }
+            | Self::Unreferenced { .. }
+            | Self::PositionCount { .. } => {}
+        }
+        self
+    }
+}

@@ -59,18 +59,27 @@ impl Surface {
         faces: Vec<[u32; 3]>,
         options: SurfaceOptions,
     ) -> Result<Self, MeshError> {
-        let (mut positions, mut faces) = (positions, faces);
-        if options.unreferenced == UnreferencedPolicy::Drop {
-            let all = positions.len();
-            (positions, faces, _) = repair::drop_unreferenced(positions, faces)?;
-            let dropped = all - positions.len();
-            if dropped > 0 {
-                log::warn!(
-                    "dropped {dropped} vertices that belong to no face; the others are renumbered"
-                );
-            }
+        if options.unreferenced == UnreferencedPolicy::Refuse {
+            return Self::with_all_vertices(positions, faces, options.orientation);
         }
-        if options.orientation == OrientationPolicy::Repair {
+        let all = positions.len();
+        let (positions, faces, kept) = repair::drop_unreferenced(positions, faces)?;
+        let dropped = all - positions.len();
+        if dropped > 0 {
+            log::warn!(
+                "dropped {dropped} vertices that belong to no face; the others are renumbered"
+            );
+        }
+        Self::with_all_vertices(positions, faces, options.orientation)
+            .map_err(|error| error.renumbered(&kept))
+    }
+
+    fn with_all_vertices(
+        positions: Vec<Vec3>,
+        mut faces: Vec<[u32; 3]>,
+        orientation: OrientationPolicy,
+    ) -> Result<Self, MeshError> {
+        if orientation == OrientationPolicy::Repair {
             let flipped;
             (faces, flipped) = repair::orient_consistently(faces)?;
             if flipped > 0 {
@@ -78,9 +87,7 @@ impl Surface {
             }
         }
         let mesh = TriMesh::new(positions.len(), faces)?;
-        let surface = Self { mesh, positions };
-        surface.check_positions()?;
-        Ok(surface)
+        Self::from_mesh(mesh, positions)
     }
 
     /// Joins a checked topology with positions, with the same checks of the positions as [`Self::new`].
@@ -277,6 +284,26 @@ mod tests {
         };
         let error = Surface::new(positions, faces, refuse).unwrap_err();
         assert_eq!(error, MeshError::Unreferenced { first: 1, count: 1 });
+    }
+
+    #[test]
+    fn errors_name_vertices_by_their_number_before_dropping() {
+        let mut positions = square();
+        positions.insert(0, Vec3::zeros());
+        let error = build(positions.clone(), &[[1, 2, 3], [2, 1, 3]]).unwrap_err();
+        assert_eq!(
+            error,
+            MeshError::DuplicateFace {
+                faces: [0, 1],
+                vertices: [1, 2, 3]
+            }
+        );
+        positions[3].x = f64::INFINITY;
+        let error = build(positions, &[[1, 2, 3], [1, 3, 4]]).unwrap_err();
+        assert!(
+            matches!(error, MeshError::NotFinite { vertex: 3, .. }),
+            "{error}"
+        );
     }
 
     #[test]
