@@ -8,6 +8,7 @@ mod bytes;
 mod checksum;
 pub mod read;
 pub mod result;
+pub mod write;
 
 pub use atomic_file::write_atomically;
 pub use read::{RawMesh, ReadError, read_mesh};
