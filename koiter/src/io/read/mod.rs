@@ -97,9 +97,11 @@ pub fn read_mesh(path: &Path) -> Result<RawMesh, ReadError> {
         path: in_file(),
         source,
     })?;
-    let format = MeshFormat::detect(&bytes, path)
+    // Some editors put a byte order mark before UTF-8; it is no part of the first word.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    let format = MeshFormat::detect(bytes, path)
         .ok_or_else(|| ReadError::UnknownFormat { path: in_file() })?;
-    let mesh = format.parse(&bytes).map_err(|source| ReadError::Parse {
+    let mesh = format.parse(bytes).map_err(|source| ReadError::Parse {
         path: in_file(),
         source,
     })?;

@@ -143,6 +143,10 @@ fn errors_carry_file_line_and_fault() {
         2
     );
 
+    assert!(
+        read(&format!("\u{feff}{square}")).is_ok(),
+        "a byte order mark is passed over"
+    );
     let error = read_mesh(&folder.path().join("none.obj"))
         .unwrap_err()
         .to_string();

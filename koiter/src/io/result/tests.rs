@@ -295,3 +295,25 @@ fn unwritable_places_give_path_and_cause() {
         "{error}"
     );
 }
+
+/// On Linux, whatever is written to `/dev/full` meets a full disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn full_disk_is_told_and_leaves_the_result_whole() {
+    let (folder, mut writer) = written(1);
+    let temporary = folder.path().join("frames/00001.bin.tmp");
+    std::os::unix::fs::symlink("/dev/full", &temporary).unwrap();
+    let error = writer.write_frame(&frame(1)).unwrap_err().to_string();
+    assert!(
+        error.contains("00001.bin: No space left on device"),
+        "{error}"
+    );
+    let reader = ResultReader::open(folder.path()).unwrap();
+    assert_eq!((reader.len(), writer.num_frames()), (1, 1));
+    // With space again, the run can go on.
+    writer.write_frame(&frame(1)).unwrap();
+    assert_eq!(
+        ResultReader::open(folder.path()).unwrap().frame(1).unwrap(),
+        frame(1)
+    );
+}
