@@ -1,5 +1,6 @@
 //! From strain to energy density, stress and tangent. Knows no mesh.
 
+pub mod presets;
 mod st_venant_kirchhoff;
 
 pub use st_venant_kirchhoff::StVenantKirchhoff;

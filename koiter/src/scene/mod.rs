@@ -1,3 +1,41 @@
-//! From what was typed to a running simulation: `SceneSpec` → `Model` → `Simulation`.
+//! From what was typed to a running simulation: `SceneSpec` → `Scene` → `Model` → `Simulation`.
+//!
+//! [`SceneFile::parse`] reads TOML text into a [`SceneSpec`]; [`Scene::build`] reads the meshes through a
+//! [`MeshSource`], resolves selections and gives a checked [`model::Model`]. A mistake is a [`SceneError`] with a
+//! message, a dotted path, a place in the text and a help.
 
 pub mod model;
+pub mod schedule;
+
+#[cfg(feature = "serde")]
+mod build;
+#[cfg(feature = "serde")]
+mod decode;
+#[cfg(feature = "serde")]
+mod document;
+#[cfg(feature = "serde")]
+mod error;
+#[cfg(feature = "serde")]
+mod nearest;
+#[cfg(feature = "serde")]
+mod placement;
+#[cfg(feature = "serde")]
+mod probe;
+#[cfg(feature = "serde")]
+mod selection;
+#[cfg(feature = "serde")]
+pub mod spec;
+#[cfg(feature = "serde")]
+mod warnings;
+
+#[cfg(feature = "serde")]
+pub use self::{
+    build::Scene,
+    document::Document,
+    error::{Location, SceneError, SceneErrorKind, Source, Warning},
+    nearest::nearest,
+    placement::{MeshData, MeshSource, NoFiles},
+    probe::{Observable, Probe, ProbeTarget},
+    selection::{SelectionError, select},
+    spec::{SceneFile, SceneSpec},
+};

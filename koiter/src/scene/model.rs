@@ -7,6 +7,11 @@ pub use crate::mesh::Surface;
 
 /// Which second fundamental form (or hinge) a shell bends with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum BendingModel {
     /// Bending-Active Cosserat: mid-edge directors, tangent profile.
@@ -186,6 +191,11 @@ impl Default for SolverOptions {
 
 /// How the state advances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum IntegratorKind {
     /// Implicit Euler dynamics.

@@ -1,0 +1,352 @@
+//! From what was typed to a model that can be simulated: meshes read, selections resolved, plausibility checked.
+
+use super::document::Document;
+use super::error::{SceneError, SceneErrorKind as Kind, Warning};
+use super::model::{
+    Constraint, ContactOptions, Model, Obstacle, ObstacleShape, Shell, SolverOptions,
+};
+use super::placement::{MeshSource, ShapeError, move_point, move_to, place, turn};
+use super::probe::{Probe, ProbeTarget, mean};
+use super::selection::{SelectionError, select};
+use super::spec::{
+    MeshSpec, ObstacleSpec, OutputSpec, ProbeQuantity, ProbeSpec, RestSpec, SceneFile, SceneSpec,
+    SelectSpec, ShellSpec,
+};
+use super::warnings;
+use crate::Vec3;
+use crate::material::presets;
+use crate::mesh::generate::{box_mesh, solid_cylinder};
+use crate::mesh::{Surface, VertexId};
+
+/// A checked scene: the model, how far to run it, what to measure and what to write.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// One line.
+    pub title: String,
+    /// What is simulated.
+    pub model: Model,
+    /// Step [s].
+    pub dt: f64,
+    /// Number of steps to the end.
+    pub num_steps: usize,
+    /// What to measure.
+    pub probes: Vec<Probe>,
+    /// What to write.
+    pub output: OutputSpec,
+    /// A frame every so many steps.
+    pub frame_steps: usize,
+    /// What is implausible.
+    pub warnings: Vec<Warning>,
+}
+
+impl Scene {
+    /// Reads and generates the meshes, resolves selections, and checks the whole.
+    ///
+    /// # Errors
+    /// A mesh that cannot be read, made or used; a rest mesh of other triangles; a selection without vertices.
+    pub fn build(file: &SceneFile, source: &dyn MeshSource) -> Result<Self, SceneError> {
+        let builder = Builder {
+            spec: &file.spec,
+            source,
+        };
+        let model = builder
+            .model()
+            .map_err(|error| file.document.place(error))?;
+        let probes = builder
+            .probes(&model)
+            .map_err(|error| file.document.place(error))?;
+        let spec = &file.spec;
+        let frame_steps = match (spec.output.every_steps, spec.output.every_seconds) {
+            (Some(steps), _) => steps,
+            (None, Some(seconds)) => ((seconds / spec.time.dt).round() as usize).max(1),
+            (None, None) => 1,
+        };
+        let warnings = located(warnings::find(&model, spec), &file.document);
+        Ok(Self {
+            title: spec.title.clone(),
+            dt: spec.time.dt,
+            // An end that is a whole number of steps up to rounding takes exactly these.
+            num_steps: ((spec.time.end / spec.time.dt - 1e-9).ceil() as usize).max(1),
+            probes,
+            output: spec.output.clone(),
+            frame_steps,
+            warnings,
+            model,
+        })
+    }
+}
+
+fn located(warnings: Vec<Warning>, document: &Document) -> Vec<Warning> {
+    warnings
+        .into_iter()
+        .map(|warning| Warning {
+            location: document.locate(&warning.path),
+            ..warning
+        })
+        .collect()
+}
+
+struct Builder<'a> {
+    spec: &'a SceneSpec,
+    source: &'a dyn MeshSource,
+}
+
+impl Builder<'_> {
+    fn model(&self) -> Result<Model, SceneError> {
+        let spec = self.spec;
+        let shells = spec
+            .shell
+            .iter()
+            .map(|s| self.shell(s))
+            .collect::<Result<Vec<_>, _>>()?;
+        let obstacles = spec
+            .obstacle
+            .iter()
+            .map(|o| self.obstacle(o))
+            .collect::<Result<_, _>>()?;
+        let constraints = self.constraints(&shells)?;
+        let (contact, solver) = (&spec.contact, SolverOptions::default());
+        Ok(Model {
+            shells,
+            obstacles,
+            constraints,
+            gravity: Vec3::from(spec.gravity),
+            gravity_scale: spec.gravity_scale.clone(),
+            contact: ContactOptions {
+                enabled: contact.enabled,
+                d_hat: contact.d_hat,
+                kappa: contact.kappa,
+                friction_speed: contact.friction_speed,
+            },
+            solver: SolverOptions {
+                velocity_tolerance: spec
+                    .solver
+                    .velocity_tolerance
+                    .unwrap_or(solver.velocity_tolerance),
+                displacement_tolerance: spec
+                    .solver
+                    .displacement_tolerance
+                    .unwrap_or(solver.displacement_tolerance),
+                max_iterations: spec.solver.max_iterations.unwrap_or(solver.max_iterations),
+            },
+            integrator: spec.integrator,
+        })
+    }
+
+    fn shell(&self, shell: &ShellSpec) -> Result<Shell, SceneError> {
+        let path = format!("shell.{}", shell.name);
+        let surface = self.mesh(&format!("{path}.mesh"), &shell.mesh)?;
+        let rest_positions = match &shell.rest_mesh {
+            None => surface.positions.clone(),
+            Some(mesh) => self.rest_positions(&format!("{path}.rest_mesh"), mesh, &surface)?,
+        };
+        let preset = shell.material.preset.as_deref().and_then(presets::find);
+        // The checks let no shell through that has neither the number nor a preset.
+        let value = |given: Option<f64>, of: fn(&presets::MaterialPreset) -> f64| {
+            given.or(preset.map(of)).unwrap_or(f64::NAN)
+        };
+        let velocities = vec![Vec3::from(shell.velocity); surface.positions.len()];
+        Ok(Shell {
+            name: shell.name.clone(),
+            velocities,
+            rest_positions,
+            rest_curved: shell.rest == RestSpec::Mesh,
+            thickness: value(shell.thickness, |preset| preset.thickness),
+            density: value(shell.material.density, |preset| preset.density),
+            youngs_modulus: value(shell.material.young, |preset| preset.youngs_modulus),
+            poissons_ratio: value(shell.material.poisson, |preset| preset.poissons_ratio),
+            bending: shell.bending,
+            friction: shell.friction,
+            contact_offset: shell.contact_thickness / 2.0,
+            surface,
+        })
+    }
+
+    fn rest_positions(
+        &self,
+        path: &str,
+        mesh: &MeshSpec,
+        surface: &Surface,
+    ) -> Result<Vec<Vec3>, SceneError> {
+        let rest = self.mesh(path, mesh)?;
+        if rest.mesh.faces() != surface.mesh.faces() {
+            let message = format!(
+                "the rest mesh must have the triangles of the start mesh, in the same order: it has {} vertices and {} \
+                 triangles, the start mesh {} and {}",
+                rest.positions.len(),
+                rest.mesh.num_faces(),
+                surface.positions.len(),
+                surface.mesh.num_faces()
+            );
+            return Err(SceneError::new(Kind::Mesh, message).inside(path));
+        }
+        Ok(rest.positions)
+    }
+
+    fn mesh(&self, path: &str, spec: &MeshSpec) -> Result<Surface, SceneError> {
+        let shape = spec.given_shapes().first().copied().unwrap_or("file");
+        place(spec, self.source).map_err(|error| mesh_error(error, &format!("{path}.{shape}")))
+    }
+
+    fn obstacle(&self, obstacle: &ObstacleSpec) -> Result<Obstacle, SceneError> {
+        Ok(Obstacle {
+            name: obstacle.name.clone(),
+            shape: self.obstacle_shape(obstacle)?,
+            friction: obstacle.friction,
+            motion: obstacle.motion.to_motion(),
+        })
+    }
+
+    fn obstacle_shape(&self, obstacle: &ObstacleSpec) -> Result<ObstacleShape, SceneError> {
+        let path = |key: &str| format!("obstacle.{}.{key}", obstacle.name);
+        let rotate = obstacle.rotate.as_ref();
+        let moved = |x: [f64; 3]| move_point(Vec3::from(x), rotate, obstacle.translate);
+        if let Some(plane) = &obstacle.plane {
+            let normal = Vec3::from(plane.normal).normalize();
+            let normal = rotate.map_or(normal, |rotate| turn(rotate) * normal);
+            return Ok(ObstacleShape::Plane {
+                point: moved(plane.point),
+                normal,
+            });
+        }
+        if let Some(sphere) = &obstacle.sphere {
+            return Ok(ObstacleShape::Sphere {
+                center: moved(sphere.center),
+                radius: sphere.radius,
+            });
+        }
+        if let Some(capsule) = &obstacle.capsule {
+            return Ok(ObstacleShape::Capsule {
+                ends: capsule.ends.map(moved),
+                radius: capsule.radius,
+            });
+        }
+        let generated = |key: &str, result: Result<Surface, _>| {
+            result.map_err(|error| mesh_error(ShapeError::Generator(error), &path(key)))
+        };
+        let mut surface = if let Some(cuboid) = &obstacle.cuboid {
+            generated("box", box_mesh(cuboid.size))?
+        } else if let Some(body) = &obstacle.cylinder {
+            generated(
+                "cylinder",
+                solid_cylinder(body.radius, body.height, body.sides),
+            )?
+        } else if let Some(mesh) = &obstacle.mesh {
+            self.mesh(&path("mesh"), mesh)?
+        } else {
+            return Err(SceneError::new(Kind::MissingKey, "no shape is given").inside(&path("")));
+        };
+        move_to(&mut surface, rotate, obstacle.translate);
+        Ok(ObstacleShape::Mesh(surface))
+    }
+
+    fn constraints(&self, shells: &[Shell]) -> Result<Vec<Constraint>, SceneError> {
+        let mut constraints = Vec::new();
+        for (index, constraint) in self.spec.constraint.iter().enumerate() {
+            let path = constraint.path(index);
+            let shell = self.shell_index(&format!("{path}.shell"), &constraint.shell)?;
+            constraints.push(Constraint {
+                shell,
+                vertices: vertices(
+                    &format!("{path}.select"),
+                    &constraint.select,
+                    &shells[shell],
+                )?,
+                axes: ['x', 'y', 'z'].map(|axis| constraint.axes.contains(axis)),
+                motion: constraint.motion.to_motion(),
+                clamp_directors: constraint.clamp,
+                until: constraint.until.unwrap_or(f64::INFINITY),
+            });
+        }
+        Ok(constraints)
+    }
+
+    fn shell_index(&self, path: &str, name: &str) -> Result<usize, SceneError> {
+        let index = self.spec.shell.iter().position(|shell| shell.name == name);
+        index.ok_or_else(|| {
+            SceneError::new(Kind::UnknownName, format!("there is no shell '{name}'")).inside(path)
+        })
+    }
+
+    fn probes(&self, model: &Model) -> Result<Vec<Probe>, SceneError> {
+        self.spec
+            .probe
+            .iter()
+            .map(|probe| self.probe(probe, model))
+            .collect()
+    }
+
+    fn probe(&self, probe: &ProbeSpec, model: &Model) -> Result<Probe, SceneError> {
+        let path = |key: &str| format!("probe.{}.{key}", probe.name);
+        let target = match probe.quantity {
+            ProbeQuantity::Energy => ProbeTarget::Energy(probe.energy.clone()),
+            ProbeQuantity::Reaction => {
+                let name = probe.constraint.as_deref().unwrap_or_default();
+                let mut constraints = self.spec.constraint.iter().enumerate();
+                let index =
+                    constraints.position(|(i, c)| c.path(i) == format!("constraint.{name}"));
+                ProbeTarget::Reaction(index.ok_or_else(|| {
+                    let message = format!("there is no constraint '{name}'");
+                    SceneError::new(Kind::UnknownName, message).inside(&path("constraint"))
+                })?)
+            }
+            quantity => {
+                let shell =
+                    self.shell_index(&path("shell"), probe.shell.as_deref().unwrap_or_default())?;
+                let all = SelectSpec {
+                    all: true,
+                    ..SelectSpec::default()
+                };
+                let selection = probe.select.as_ref().unwrap_or(&all);
+                let vertices: Vec<usize> =
+                    vertices(&path("select"), selection, &model.shells[shell])?
+                        .into_iter()
+                        .map(|vertex| vertex.0 as usize)
+                        .collect();
+                let start = mean(&model.shells[shell].surface.positions, &vertices);
+                ProbeTarget::Vertices {
+                    quantity,
+                    shell,
+                    vertices,
+                    start,
+                }
+            }
+        };
+        Ok(Probe {
+            name: probe.name.clone(),
+            target,
+            axis: probe.axis,
+        })
+    }
+}
+
+fn mesh_error(error: ShapeError, path: &str) -> SceneError {
+    let help = match &error {
+        ShapeError::File { .. } => Some("file names are relative to the scene's folder"),
+        ShapeError::Mesh(crate::mesh::MeshError::InconsistentOrientation { .. }) => {
+            Some("repair_orientation = true in this mesh reverses such triangles")
+        }
+        _ => None,
+    };
+    let error = SceneError::new(Kind::Mesh, error.to_string()).inside(path);
+    match help {
+        Some(help) => error.with_help(help),
+        None => error,
+    }
+}
+
+fn vertices(path: &str, spec: &SelectSpec, shell: &Shell) -> Result<Vec<VertexId>, SceneError> {
+    select(spec, &shell.surface).map_err(|error| {
+        let key = match error {
+            SelectionError::NoSuchVertex { .. } => "vertices",
+            SelectionError::NoSuchLoop { .. } => "boundary",
+            SelectionError::Empty { .. } => "",
+        };
+        let path = format!("{path}.{key}");
+        let message = format!("shell '{}': {error}", shell.name);
+        SceneError::new(Kind::EmptySelection, message).inside(path.trim_end_matches('.'))
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,241 @@
+use super::*;
+use crate::scene::placement::{MeshData, NoFiles};
+use crate::scene::schedule::Schedule;
+
+const SCENE: &str = r#"
+time = { end = 1.0, dt = 0.1 }
+output.every_seconds = 0.25
+[[shell]]
+name = "cloth"
+material = "cotton"
+mesh.grid = { size = [1.0, 1.0], cells = [4, 4] }
+mesh.translate = [0, 0, 1]
+[[obstacle]]
+name = "ball"
+sphere = { radius = 0.3 }
+translate = [0, 0, 0.5]
+[[obstacle]]
+name = "lid"
+box = { size = [1, 1, 0.1] }
+motion.translate = [[0, [0, 0, 0]], [1, [0, 0, -1]]]
+[[constraint]]
+name = "edge"
+shell = "cloth"
+select.box = { min = [0.5, -1, 0], max = [1, 1, 2] }
+axes = "xz"
+[[probe]]
+name = "middle"
+quantity = "displacement"
+shell = "cloth"
+select.nearest = [0, 0, 1]
+[[probe]]
+name = "pull"
+quantity = "reaction"
+constraint = "edge"
+"#;
+
+struct Files;
+
+impl MeshSource for Files {
+    fn read(&self, file: &str) -> Result<MeshData, Box<dyn std::error::Error + Send + Sync>> {
+        let positions = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [1.0, 1.0, 0.0],
+        ];
+        let faces = match file {
+            "crossed.obj" => vec![[0, 1, 2], [1, 2, 3]],
+            "large.obj" => vec![[0, 1, 2], [1, 3, 2]],
+            _ => return Err(format!("{file}: no such file").into()),
+        };
+        let scale = if file == "large.obj" { 500.0 } else { 1.0 };
+        let positions = positions.map(|x| Vec3::from(x) * scale).to_vec();
+        Ok(MeshData { positions, faces })
+    }
+}
+
+fn build(text: &str) -> Result<Scene, SceneError> {
+    Scene::build(&SceneFile::parse("scene.toml", text, &[])?, &Files)
+}
+
+#[test]
+fn a_scene_becomes_a_model() {
+    let scene = build(SCENE).unwrap();
+    let shell = &scene.model.shells[0];
+    assert_eq!((scene.num_steps, scene.frame_steps), (10, 3));
+    assert_eq!((shell.youngs_modulus, shell.thickness), (1e6, 1e-3));
+    assert!(shell.surface.positions.iter().all(|x| x.z == 1.0));
+    assert_eq!(shell.rest_positions, shell.surface.positions);
+    let ObstacleShape::Sphere { center, radius } = &scene.model.obstacles[0].shape else {
+        panic!("the ball is a sphere");
+    };
+    assert_eq!((*center, *radius), (Vec3::new(0.0, 0.0, 0.5), 0.3));
+    let falling = Schedule {
+        times: vec![0.0, 1.0],
+        values: vec![Vec3::zeros(), -Vec3::z()],
+    };
+    assert_eq!(scene.model.obstacles[1].motion.translation, Some(falling));
+    let constraint = &scene.model.constraints[0];
+    assert_eq!(
+        (constraint.vertices.len(), constraint.axes),
+        (5, [true, false, true])
+    );
+    assert_eq!(
+        scene.probes[0].columns(),
+        ["middle.x", "middle.y", "middle.z"]
+    );
+    assert!(matches!(scene.probes[1].target, ProbeTarget::Reaction(0)));
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn an_end_of_whole_steps_takes_exactly_these() {
+    for (end, dt, steps) in [
+        (0.3, 0.1, 3),
+        (1.0, 0.3, 4),
+        (0.8, 0.02, 40),
+        (0.01, 0.02, 1),
+    ] {
+        let text = SCENE.replace("end = 1.0, dt = 0.1", &format!("end = {end}, dt = {dt}"));
+        assert_eq!(build(&text).unwrap().num_steps, steps, "{end} / {dt}");
+    }
+}
+
+#[test]
+fn mistakes_that_only_meshes_show_point_at_their_line() {
+    let grid = "mesh.grid = { size = [1.0, 1.0], cells = [4, 4] }";
+    let cases = [
+        (
+            grid,
+            "mesh.file = \"a.obj\"",
+            "shell.cloth.mesh.file",
+            (7, "\"a.obj\""),
+            "no such file",
+        ),
+        (
+            grid,
+            "mesh.file = \"crossed.obj\"",
+            "shell.cloth.mesh.file",
+            (7, "\"crossed.obj\""),
+            "repair_orientation",
+        ),
+        (
+            "cells = [4, 4]",
+            "cells = [4, 0]",
+            "shell.cloth.mesh.grid",
+            (7, "{ size = [1.0, 1.0], cells = [4, 0] }"),
+            "at least 1",
+        ),
+        (
+            "size = [1, 1, 0.1]",
+            "size = [1, 1, 0]",
+            "obstacle.lid.box",
+            (15, "{ size = [1, 1, 0] }"),
+            "positive",
+        ),
+        (
+            "min = [0.5, -1, 0]",
+            "min = [0.6, -1, 0]",
+            "constraint.edge.select",
+            (20, "select"),
+            "no vertices",
+        ),
+        (
+            "select.nearest = [0, 0, 1]",
+            "select.vertices = [99]",
+            "probe.middle.select.vertices",
+            (26, "[99]"),
+            "vertex 99",
+        ),
+        (
+            "select.nearest = [0, 0, 1]",
+            "select.boundary = 1",
+            "probe.middle.select.boundary",
+            (26, "1"),
+            "loop 1",
+        ),
+        (
+            "mesh.translate",
+            "rest_mesh.grid = { size = [1, 1], cells = [5, 4] }\nmesh.translate",
+            "shell.cloth.rest_mesh",
+            (8, "rest_mesh"),
+            "30 vertices",
+        ),
+    ];
+    for (from, to, path, place, words) in cases {
+        assert!(SCENE.contains(from), "{from}");
+        let error = build(&SCENE.replacen(from, to, 1)).unwrap_err();
+        let said = format!(
+            "{} | {}",
+            error.message,
+            error.help.as_deref().unwrap_or("")
+        );
+        let location = error.location.unwrap();
+        assert_eq!(error.path, path, "{said}");
+        assert_eq!((location.line(), location.text()), place, "{said}");
+        assert!(said.contains(words), "{said}");
+    }
+    let file = SceneFile::parse(
+        "s",
+        &SCENE.replacen(grid, "mesh.file = \"large.obj\"", 1),
+        &[],
+    )
+    .unwrap();
+    assert!(Scene::build(&file, &NoFiles).is_err());
+}
+
+#[test]
+fn implausible_numbers_are_warned_about_not_refused() {
+    let grid = "mesh.grid = { size = [1.0, 1.0], cells = [4, 4] }";
+    let cases = [
+        (
+            "\"cotton\"",
+            "{ preset = \"cotton\", young = 10 }",
+            "shell.cloth.material.young",
+            "pascals",
+        ),
+        (
+            "\"cotton\"",
+            "{ preset = \"cotton\", young = 7e13 }",
+            "shell.cloth.material.young",
+            "diamond",
+        ),
+        (
+            "\"cotton\"",
+            "{ preset = \"cotton\", density = 0.2 }",
+            "shell.cloth.material.density",
+            "1 g/cm³",
+        ),
+        (
+            "\"cotton\"",
+            "\"cotton\"\nthickness = 0.1",
+            "shell.cloth.thickness",
+            "1 mm is 1e-3",
+        ),
+    ];
+    for (from, to, path, words) in cases {
+        let scene = build(&SCENE.replacen(from, to, 1)).unwrap();
+        let [warning] = &scene.warnings[..] else {
+            panic!("{:?}", scene.warnings)
+        };
+        assert_eq!(warning.path, path);
+        assert!(
+            warning.help.as_ref().unwrap().contains(words),
+            "{warning:?}"
+        );
+        assert!(warning.location.is_some());
+    }
+    let text = "time = { end = 1, dt = 1 }\n[[shell]]\nname = \"a\"\nmaterial = \"cotton\"\nmesh.file = \"large.obj\"";
+    let scene = build(text).unwrap();
+    assert!(
+        scene.warnings[0]
+            .help
+            .as_ref()
+            .unwrap()
+            .contains("units = \"mm\""),
+        "{:?}",
+        scene.warnings
+    );
+    assert!(SCENE.contains(grid));
+}

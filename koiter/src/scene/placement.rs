@@ -1,0 +1,198 @@
+//! From a mesh specification to a surface in its place.
+
+use nalgebra::{Rotation3, Unit};
+
+use super::spec::{Diagonals, MeshSpec, RotationSpec, UpAxis};
+use crate::Vec3;
+use crate::mesh::generate::{self, GeneratorError, GridDiagonals};
+use crate::mesh::{MeshError, OrientationPolicy, Surface, SurfaceOptions, UnreferencedPolicy};
+
+/// Triangles as a file has them, unchecked.
+#[derive(Clone, Debug, Default)]
+pub struct MeshData {
+    /// Positions in the file's unit.
+    pub positions: Vec<Vec3>,
+    /// Corners of the faces.
+    pub faces: Vec<[u32; 3]>,
+}
+
+/// Where mesh files come from; the library's scenes read no files themselves.
+pub trait MeshSource {
+    /// The mesh of the file named in a scene.
+    ///
+    /// # Errors
+    /// Whatever the reader says; it is told with the place of the name.
+    fn read(&self, file: &str) -> Result<MeshData, Box<dyn std::error::Error + Send + Sync>>;
+}
+
+/// For scenes without mesh files.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoFiles;
+
+impl MeshSource for NoFiles {
+    fn read(&self, _: &str) -> Result<MeshData, Box<dyn std::error::Error + Send + Sync>> {
+        Err("this scene may not read files".into())
+    }
+}
+
+/// Why a mesh of a scene cannot be had.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub(super) enum ShapeError {
+    #[error("cannot read the mesh \"{file}\": {reason}")]
+    File {
+        file: String,
+        reason: Box<dyn std::error::Error + Send + Sync>,
+    },
+    #[error(transparent)]
+    Generator(#[from] GeneratorError),
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
+/// Reads or generates a mesh and puts it in its place.
+pub(super) fn place(spec: &MeshSpec, source: &dyn MeshSource) -> Result<Surface, ShapeError> {
+    let mut surface = make(spec, source)?;
+    let scale = spec.units.in_metres() * spec.scale;
+    for x in &mut surface.positions {
+        *x *= scale;
+        if spec.up == UpAxis::Y {
+            *x = Vec3::new(x.x, -x.z, x.y);
+        }
+    }
+    if spec.center {
+        let (low, high) = surface.bounding_box();
+        let center = (low + high) / 2.0;
+        surface.positions.iter_mut().for_each(|x| *x -= center);
+    }
+    move_to(&mut surface, spec.rotate.as_ref(), spec.translate);
+    // Checked again: a scale may push coordinates out of the range where areas can be computed.
+    Ok(Surface::from_mesh(surface.mesh, surface.positions)?)
+}
+
+/// Rotates, then translates.
+pub(super) fn move_to(surface: &mut Surface, rotate: Option<&RotationSpec>, translate: [f64; 3]) {
+    for x in &mut surface.positions {
+        *x = move_point(*x, rotate, translate);
+    }
+}
+
+/// Rotates, then translates.
+pub(super) fn move_point(x: Vec3, rotate: Option<&RotationSpec>, translate: [f64; 3]) -> Vec3 {
+    let turned = rotate.map_or(x, |rotate| {
+        let pivot = Vec3::from(rotate.through);
+        turn(rotate) * (x - pivot) + pivot
+    });
+    turned + Vec3::from(translate)
+}
+
+/// The rotation without its pivot: for directions.
+pub(super) fn turn(rotate: &RotationSpec) -> Rotation3<f64> {
+    let axis = Unit::new_normalize(Vec3::from(rotate.axis));
+    Rotation3::from_axis_angle(&axis, rotate.degrees.to_radians())
+}
+
+fn make(spec: &MeshSpec, source: &dyn MeshSource) -> Result<Surface, ShapeError> {
+    if let Some(file) = &spec.file {
+        let data = source.read(file).map_err(|reason| ShapeError::File {
+            file: file.clone(),
+            reason,
+        })?;
+        let orientation = match spec.repair_orientation {
+            true => OrientationPolicy::Repair,
+            false => OrientationPolicy::Refuse,
+        };
+        let options = SurfaceOptions {
+            orientation,
+            unreferenced: UnreferencedPolicy::Drop,
+        };
+        return Ok(Surface::new(data.positions, data.faces, options)?);
+    }
+    Ok(generate(spec)?)
+}
+
+fn generate(spec: &MeshSpec) -> Result<Surface, GeneratorError> {
+    if let Some(g) = &spec.grid {
+        let diagonals = match g.diagonals {
+            Diagonals::Uniform => GridDiagonals::Uniform,
+            Diagonals::Alternating => GridDiagonals::Alternating,
+            Diagonals::Checkerboard => GridDiagonals::Checkerboard,
+        };
+        return generate::grid(g.size[0], g.size[1], g.cells[0], g.cells[1], diagonals);
+    }
+    if let Some(g) = &spec.irregular {
+        return generate::irregular(g.size[0], g.size[1], g.max_area, g.seed);
+    }
+    if let Some(g) = &spec.disc {
+        return generate::disc(g.radius, g.rings);
+    }
+    if let Some(g) = &spec.cylinder {
+        return generate::cylinder(g.radius, g.height, g.around, g.along);
+    }
+    if let Some(g) = &spec.cone {
+        return generate::cone(g.base_radius, g.height, g.top_radius, g.around, g.along);
+    }
+    if let Some(g) = &spec.icosphere {
+        return generate::icosphere(g.radius, g.subdivisions);
+    }
+    if let Some(g) = &spec.torus {
+        return generate::torus(g.major_radius, g.minor_radius, g.around, g.tube);
+    }
+    if let Some(g) = &spec.cap {
+        let hole = g.hole_degrees.map(f64::to_radians);
+        return generate::spherical_cap(g.radius, g.degrees.to_radians(), hole, g.rings);
+    }
+    // The scene's checks let exactly one shape through.
+    Err(GeneratorError::Mesh(MeshError::Empty))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::spec::{GridSpec, Units};
+    use super::*;
+
+    struct OneTriangle;
+
+    impl MeshSource for OneTriangle {
+        fn read(&self, _: &str) -> Result<MeshData, Box<dyn std::error::Error + Send + Sync>> {
+            let positions = [[0.0, 0.0, 0.0], [0.0, 0.0, 10.0], [0.0, 20.0, 0.0]];
+            Ok(MeshData {
+                positions: positions.map(Vec3::from).to_vec(),
+                faces: vec![[0, 1, 2]],
+            })
+        }
+    }
+
+    #[test]
+    fn files_are_scaled_turned_centred_and_moved_in_this_order() {
+        let spec = MeshSpec {
+            file: Some("a.obj".into()),
+            units: Units::Millimetre,
+            scale: 2.0,
+            up: UpAxis::Y,
+            center: true,
+            translate: [1.0, 0.0, 0.0],
+            ..MeshSpec::default()
+        };
+        let surface = place(&spec, &OneTriangle).unwrap();
+        let (low, high) = surface.bounding_box();
+        // 20 mm along the file's y, doubled, now stand along z; 10 mm along its z lie along −y.
+        assert!((low - Vec3::new(1.0, -0.01, -0.02)).norm() < 1e-15, "{low}");
+        assert!((high - Vec3::new(1.0, 0.01, 0.02)).norm() < 1e-15, "{high}");
+    }
+
+    #[test]
+    fn a_generated_mesh_that_is_not_moved_keeps_its_exact_coordinates() {
+        let spec = MeshSpec {
+            grid: Some(GridSpec {
+                size: [1.0, 1.0],
+                cells: [3, 3],
+                diagonals: Diagonals::Checkerboard,
+            }),
+            scale: 1.0,
+            ..MeshSpec::default()
+        };
+        let expected = generate::grid(1.0, 1.0, 3, 3, GridDiagonals::Checkerboard).unwrap();
+        assert_eq!(place(&spec, &NoFiles).unwrap(), expected);
+    }
+}

@@ -1,0 +1,465 @@
+//! What a scene file says: the types of its keys, with their defaults. SI units; angles in degrees.
+//!
+//! ```
+//! use koiter::scene::SceneFile;
+//!
+//! let text = r#"
+//! time = { end = 1.0, dt = 0.02 }
+//! [[shell]]
+//! name = "cloth"
+//! material = "cotton"
+//! mesh.grid = { size = [1.0, 1.0], cells = [10, 10] }
+//! "#;
+//! let scene = SceneFile::parse("scene.toml", text, &[])?;
+//! assert_eq!(scene.spec.shell[0].name, "cloth");
+//!
+//! let wrong = SceneFile::parse("scene.toml", &text.replace("cotton", "coton"), &[]).unwrap_err();
+//! assert_eq!(wrong.path, "shell.cloth.material.preset");
+//! # Ok::<(), koiter::scene::SceneError>(())
+//! ```
+
+mod check;
+mod shape;
+
+pub use shape::{
+    BoxSpec, CapsuleSpec, CylinderBodySpec, MeshSpec, PlaneSpec, RotationSpec, SphereSpec, Units,
+    UpAxis,
+};
+pub use shape::{
+    CapSpec, ConeSpec, CylinderSpec, Diagonals, DiscSpec, GridSpec, IcosphereSpec, IrregularSpec,
+    TorusSpec,
+};
+
+use serde::Deserialize;
+
+use super::decode::decode;
+use super::document::Document;
+use super::error::SceneError;
+use super::model::{BendingModel, IntegratorKind};
+use super::schedule::{MotionSpec, Schedule};
+
+/// A scene as it was typed.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneSpec {
+    /// One line.
+    #[serde(default)]
+    pub title: String,
+    /// More lines.
+    #[serde(default)]
+    pub description: String,
+    /// How long, in which steps.
+    pub time: TimeSpec,
+    /// How the state advances.
+    #[serde(default)]
+    pub integrator: IntegratorKind,
+    /// Gravitational acceleration [m/s²].
+    #[serde(default = "standard_gravity")]
+    pub gravity: [f64; 3],
+    /// Factor on gravity over time.
+    #[serde(default)]
+    pub gravity_scale: Option<Schedule<f64>>,
+    /// Shells.
+    #[serde(default)]
+    pub shell: Vec<ShellSpec>,
+    /// Obstacles.
+    #[serde(default)]
+    pub obstacle: Vec<ObstacleSpec>,
+    /// Prescribed vertices.
+    #[serde(default)]
+    pub constraint: Vec<ConstraintSpec>,
+    /// Contact.
+    #[serde(default)]
+    pub contact: ContactSpec,
+    /// Newton's method.
+    #[serde(default)]
+    pub solver: SolverSpec,
+    /// What to measure.
+    #[serde(default)]
+    pub probe: Vec<ProbeSpec>,
+    /// What to write.
+    #[serde(default)]
+    pub output: OutputSpec,
+}
+
+fn standard_gravity() -> [f64; 3] {
+    [0.0, 0.0, -9.81]
+}
+
+/// `[time]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TimeSpec {
+    /// End of the simulation [s].
+    pub end: f64,
+    /// Step [s].
+    pub dt: f64,
+}
+
+/// `[[shell]]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShellSpec {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Start shape.
+    pub mesh: MeshSpec,
+    /// Material: a preset, numbers, or a preset with some numbers replaced.
+    #[serde(default)]
+    pub material: MaterialSpec,
+    /// Thickness [m]; default: the preset's.
+    #[serde(default)]
+    pub thickness: Option<f64>,
+    /// Bending model.
+    #[serde(default)]
+    pub bending: BendingModel,
+    /// Rest curvature.
+    #[serde(default)]
+    pub rest: RestSpec,
+    /// A shape of the same triangles that gives the rest lengths (and, with `rest = "mesh"`, the rest curvature);
+    /// default: the start shape.
+    #[serde(default)]
+    pub rest_mesh: Option<MeshSpec>,
+    /// Start velocity of all vertices [m/s].
+    #[serde(default)]
+    pub velocity: [f64; 3],
+    /// Friction coefficient.
+    #[serde(default = "default_friction")]
+    pub friction: f64,
+    /// Distance [m] at which two midsurfaces touch, as if the shell were this thick; default 0.
+    #[serde(default)]
+    pub contact_thickness: f64,
+}
+
+fn default_friction() -> f64 {
+    0.3
+}
+
+/// Rest curvature of a shell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RestSpec {
+    /// The shell wants to be flat.
+    #[default]
+    Flat,
+    /// The shell wants to be curved like its rest mesh.
+    Mesh,
+}
+
+/// `material`: `"cotton"` is short for `{ preset = "cotton" }`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialSpec {
+    /// Name of a preset.
+    #[serde(default)]
+    pub preset: Option<String>,
+    /// Young's modulus [Pa].
+    #[serde(default)]
+    pub young: Option<f64>,
+    /// Poisson's ratio.
+    #[serde(default)]
+    pub poisson: Option<f64>,
+    /// Density [kg/m³].
+    #[serde(default)]
+    pub density: Option<f64>,
+}
+
+/// `[[obstacle]]`: exactly one shape.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObstacleSpec {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Half-space.
+    #[serde(default)]
+    pub plane: Option<PlaneSpec>,
+    /// Exact ball.
+    #[serde(default)]
+    pub sphere: Option<SphereSpec>,
+    /// Exact cylinder with round ends.
+    #[serde(default)]
+    pub capsule: Option<CapsuleSpec>,
+    /// Box.
+    #[serde(default, rename = "box")]
+    pub cuboid: Option<BoxSpec>,
+    /// Cylinder with flat ends, along z.
+    #[serde(default)]
+    pub cylinder: Option<CylinderBodySpec>,
+    /// Any mesh.
+    #[serde(default)]
+    pub mesh: Option<MeshSpec>,
+    /// Turned by this first.
+    #[serde(default)]
+    pub rotate: Option<RotationSpec>,
+    /// Then moved by this [m].
+    #[serde(default)]
+    pub translate: [f64; 3],
+    /// Friction coefficient.
+    #[serde(default = "default_friction")]
+    pub friction: f64,
+    /// Motion over time.
+    #[serde(default)]
+    pub motion: MotionSpec,
+}
+
+/// `[[constraint]]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConstraintSpec {
+    /// Name, to be addressed by; default: its number.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// The shell.
+    pub shell: String,
+    /// Which vertices.
+    pub select: SelectSpec,
+    /// Which of x, y, z are prescribed.
+    #[serde(default = "all_axes")]
+    pub axes: String,
+    /// Motion over time; default: none, the vertices are pinned.
+    #[serde(default)]
+    pub motion: MotionSpec,
+    /// Whether the directors are held too.
+    #[serde(default)]
+    pub clamp: bool,
+    /// The constraint ends at this time [s].
+    #[serde(default)]
+    pub until: Option<f64>,
+}
+
+fn all_axes() -> String {
+    "xyz".to_owned()
+}
+
+/// `select`: vertices that meet all the conditions given, in the start shape.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SelectSpec {
+    /// All vertices.
+    #[serde(default)]
+    pub all: bool,
+    /// Inside a box, faces included.
+    #[serde(default, rename = "box")]
+    pub cuboid: Option<BoundsSpec>,
+    /// By number, from 0.
+    #[serde(default)]
+    pub vertices: Option<Vec<u32>>,
+    /// On a boundary loop; loops are numbered from 0 in the order of their smallest vertices.
+    #[serde(default)]
+    pub boundary: Option<usize>,
+    /// The one vertex nearest to a point [m].
+    #[serde(default)]
+    pub nearest: Option<[f64; 3]>,
+}
+
+/// A box by its corners [m].
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoundsSpec {
+    /// Smallest coordinates; default: no limit.
+    #[serde(default = "no_minimum")]
+    pub min: [f64; 3],
+    /// Largest coordinates; default: no limit.
+    #[serde(default = "no_maximum")]
+    pub max: [f64; 3],
+}
+
+fn no_minimum() -> [f64; 3] {
+    [f64::NEG_INFINITY; 3]
+}
+
+fn no_maximum() -> [f64; 3] {
+    [f64::INFINITY; 3]
+}
+
+/// `[contact]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactSpec {
+    /// Whether contact is on.
+    #[serde(default = "yes")]
+    pub enabled: bool,
+    /// Distance [m] at which surfaces begin to repel; default: from the mesh.
+    #[serde(default)]
+    pub d_hat: Option<f64>,
+    /// Barrier stiffness [J/m²]; default: adapted.
+    #[serde(default)]
+    pub kappa: Option<f64>,
+    /// Sliding speed [m/s] below which friction is smoothed.
+    #[serde(default = "friction_speed")]
+    pub friction_speed: f64,
+}
+
+impl Default for ContactSpec {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            d_hat: None,
+            kappa: None,
+            friction_speed: friction_speed(),
+        }
+    }
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn friction_speed() -> f64 {
+    1e-3
+}
+
+/// `[solver]`; defaults are those of [`super::model::SolverOptions`].
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SolverSpec {
+    /// Newton stops when nothing moved faster than this [m/s].
+    #[serde(default)]
+    pub velocity_tolerance: Option<f64>,
+    /// Statics: Newton stops when nothing moved further than this [m].
+    #[serde(default)]
+    pub displacement_tolerance: Option<f64>,
+    /// Largest number of Newton iterations a step.
+    #[serde(default)]
+    pub max_iterations: Option<usize>,
+}
+
+/// `[[probe]]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProbeSpec {
+    /// Name, the heading of its column.
+    pub name: String,
+    /// What is measured.
+    pub quantity: ProbeQuantity,
+    /// The shell; not for energies and reactions.
+    #[serde(default)]
+    pub shell: Option<String>,
+    /// Which vertices; default: all of the shell.
+    #[serde(default)]
+    pub select: Option<SelectSpec>,
+    /// Only this component.
+    #[serde(default)]
+    pub axis: Option<Axis>,
+    /// Name of the energy; default: the sum.
+    #[serde(default)]
+    pub energy: Option<String>,
+    /// Name or number of the constraint, for a reaction.
+    #[serde(default)]
+    pub constraint: Option<String>,
+}
+
+/// What a probe measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum ProbeQuantity {
+    /// Mean position [m].
+    Position,
+    /// Mean displacement from the start [m].
+    Displacement,
+    /// Mean velocity [m/s].
+    Velocity,
+    /// Smallest z [m].
+    Lowest,
+    /// Largest z [m].
+    Highest,
+    /// An energy [J].
+    Energy,
+    /// Force on a constraint [N].
+    Reaction,
+}
+
+/// A coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Axis {
+    /// First.
+    X,
+    /// Second.
+    Y,
+    /// Third, up.
+    Z,
+}
+
+/// `[output]`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OutputSpec {
+    /// A frame every so many steps.
+    #[serde(default)]
+    pub every_steps: Option<usize>,
+    /// A frame every so many seconds of simulated time.
+    #[serde(default)]
+    pub every_seconds: Option<f64>,
+    /// Face fields written with each frame.
+    #[serde(default = "all_fields")]
+    pub fields: Vec<String>,
+    /// View of the pictures: `front`, `side`, `top`, `iso`, or `azimuth=30,elevation=20,zoom=1.2`.
+    #[serde(default)]
+    pub camera: Option<String>,
+    /// Field that colours the pictures.
+    #[serde(default)]
+    pub color: Option<String>,
+}
+
+impl Default for OutputSpec {
+    fn default() -> Self {
+        Self {
+            every_steps: None,
+            every_seconds: None,
+            fields: all_fields(),
+            camera: None,
+            color: None,
+        }
+    }
+}
+
+/// Names of the face fields a run can write.
+pub const FIELD_NAMES: [&str; 3] = ["strain", "bending_energy_density", "mean_curvature"];
+
+fn all_fields() -> Vec<String> {
+    FIELD_NAMES.map(ToOwned::to_owned).to_vec()
+}
+
+/// A scene with the text it was read from.
+#[derive(Clone, Debug)]
+pub struct SceneFile {
+    /// What was typed.
+    pub spec: SceneSpec,
+    /// Where it was typed.
+    pub document: Document,
+}
+
+impl SceneFile {
+    /// Reads and checks a scene. `name` stands for the text in messages; `overrides` are `KEY=VALUE` texts.
+    ///
+    /// # Errors
+    /// See [`super::SceneErrorKind`]; meshes and selections are checked later, by [`super::Scene::build`].
+    pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, SceneError> {
+        let document = Document::parse(name, text, overrides)?;
+        let spec = decode(&document.root).map_err(|error| document.place(error))?;
+        let file = Self { spec, document };
+        file.check()?;
+        Ok(file)
+    }
+
+    /// A scene made by a program; errors then have a path but no place.
+    ///
+    /// # Errors
+    /// Those of [`Self::parse`] that are not about text.
+    pub fn from_spec(spec: SceneSpec) -> Result<Self, SceneError> {
+        let document = Document::empty();
+        let file = Self { spec, document };
+        file.check()?;
+        Ok(file)
+    }
+
+    fn check(&self) -> Result<(), SceneError> {
+        check::check(&self.spec).map_err(|error| self.document.place(error))
+    }
+}
+
+#[cfg(test)]
+mod tests;

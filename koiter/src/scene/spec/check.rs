@@ -1,0 +1,483 @@
+//! Checks that need no mesh: ranges, names, and keys that must stand alone.
+
+use super::{
+    ConstraintSpec, FIELD_NAMES, MeshSpec, ObstacleSpec, ProbeQuantity, ProbeSpec, RotationSpec,
+    SceneSpec, SelectSpec, ShellSpec,
+};
+use crate::material::presets;
+use crate::scene::document::suggest;
+use crate::scene::error::{SceneError, SceneErrorKind as Kind};
+use crate::scene::schedule::{MotionSpec, Schedule};
+
+type Checked = Result<(), SceneError>;
+
+/// More steps than this are a slip in `dt`.
+const MAX_STEPS: f64 = 1e8;
+
+/// Checks a whole scene; the first mistake is returned with its path.
+pub(super) fn check(spec: &SceneSpec) -> Checked {
+    positive("time.dt", spec.time.dt, "s")?;
+    positive("time.end", spec.time.end, "s")?;
+    if spec.time.end / spec.time.dt > MAX_STEPS {
+        let steps = spec.time.end / spec.time.dt;
+        return Err(error(
+            Kind::OutOfRange,
+            "time.dt",
+            format!("these are {steps:.1e} time steps"),
+        )
+        .with_help("make dt larger or end smaller"));
+    }
+    if spec.shell.is_empty() {
+        return Err(error(
+            Kind::MissingKey,
+            "",
+            "the scene has no [[shell]]".into(),
+        ));
+    }
+    if let Some(schedule) = &spec.gravity_scale {
+        check_schedule("gravity_scale", schedule)?;
+    }
+    unique(
+        "shell",
+        spec.shell.iter().map(|shell| Some(shell.name.as_str())),
+    )?;
+    unique(
+        "obstacle",
+        spec.obstacle
+            .iter()
+            .map(|obstacle| Some(obstacle.name.as_str())),
+    )?;
+    unique(
+        "constraint",
+        spec.constraint
+            .iter()
+            .map(|constraint| constraint.name.as_deref()),
+    )?;
+    unique(
+        "probe",
+        spec.probe.iter().map(|probe| Some(probe.name.as_str())),
+    )?;
+    for shell in &spec.shell {
+        check_shell(&format!("shell.{}", shell.name), shell)?;
+    }
+    for obstacle in &spec.obstacle {
+        check_obstacle(&format!("obstacle.{}", obstacle.name), obstacle)?;
+    }
+    for (index, constraint) in spec.constraint.iter().enumerate() {
+        check_constraint(&constraint.path(index), constraint, spec)?;
+    }
+    for probe in &spec.probe {
+        check_probe(&format!("probe.{}", probe.name), probe, spec)?;
+    }
+    check_contact_and_solver(spec)?;
+    check_output(spec)
+}
+
+impl ConstraintSpec {
+    /// Dotted path of the constraint with this number.
+    pub(in crate::scene) fn path(&self, index: usize) -> String {
+        match &self.name {
+            Some(name) => format!("constraint.{name}"),
+            None => format!("constraint.{index}"),
+        }
+    }
+}
+
+fn check_shell(path: &str, shell: &ShellSpec) -> Checked {
+    let at = |key: &str| format!("{path}.{key}");
+    check_mesh(&at("mesh"), &shell.mesh)?;
+    if let Some(mesh) = &shell.rest_mesh {
+        check_mesh(&at("rest_mesh"), mesh)?;
+    }
+    let material = &shell.material;
+    if let Some(name) = &material.preset {
+        let names: Vec<&str> = presets::ALL.iter().map(|preset| preset.name).collect();
+        if !names.contains(&name.as_str()) {
+            let message = format!("there is no material '{name}'");
+            return Err(error(Kind::UnknownName, &at("material.preset"), message)
+                .with_help(suggest(name, &names)));
+        }
+    }
+    let needed = [
+        ("material.young", material.young),
+        ("material.poisson", material.poisson),
+        ("material.density", material.density),
+        ("thickness", shell.thickness),
+    ];
+    for (key, value) in needed {
+        if value.is_none() && material.preset.is_none() {
+            let message = format!("the shell has neither a material preset nor '{key}'");
+            return Err(error(Kind::MissingKey, &at(key), message).with_help(
+                "write material = \"cotton\", or give young, poisson, density and thickness",
+            ));
+        }
+    }
+    optional_positive(&at("material.young"), material.young, "Pa")?;
+    optional_positive(&at("material.density"), material.density, "kg/m³")?;
+    optional_positive(&at("thickness"), shell.thickness, "m")?;
+    if let Some(poisson) = material.poisson
+        && !(-1.0 < poisson && poisson < 0.5 || poisson == 0.5)
+    {
+        let message =
+            format!("Poisson's ratio must lie above -1 and at most at 0.5, but it is {poisson}");
+        return Err(error(Kind::OutOfRange, &at("material.poisson"), message));
+    }
+    not_negative(&at("friction"), shell.friction, "")?;
+    not_negative(&at("contact_thickness"), shell.contact_thickness, "m")
+}
+
+fn check_mesh(path: &str, mesh: &MeshSpec) -> Checked {
+    exactly_one(
+        path,
+        &mesh.given_shapes(),
+        "file, grid, irregular, disc, cylinder, cone, icosphere, torus, cap",
+    )?;
+    if mesh.scale == 0.0 {
+        return Err(error(
+            Kind::OutOfRange,
+            &format!("{path}.scale"),
+            "the scale must not be 0".into(),
+        ));
+    }
+    positive(&format!("{path}.scale"), mesh.scale, "")?;
+    mesh.rotate.as_ref().map_or(Ok(()), |rotate| {
+        check_rotation(&format!("{path}.rotate"), rotate)
+    })
+}
+
+fn check_rotation(path: &str, rotation: &RotationSpec) -> Checked {
+    check_direction(&format!("{path}.axis"), rotation.axis)
+}
+
+fn check_direction(path: &str, direction: [f64; 3]) -> Checked {
+    if direction == [0.0; 3] {
+        return Err(error(
+            Kind::OutOfRange,
+            path,
+            "a direction must not be [0, 0, 0]".into(),
+        ));
+    }
+    Ok(())
+}
+
+fn check_obstacle(path: &str, obstacle: &ObstacleSpec) -> Checked {
+    let at = |key: &str| format!("{path}.{key}");
+    let shapes = [
+        ("plane", obstacle.plane.is_some()),
+        ("sphere", obstacle.sphere.is_some()),
+        ("capsule", obstacle.capsule.is_some()),
+        ("box", obstacle.cuboid.is_some()),
+        ("cylinder", obstacle.cylinder.is_some()),
+        ("mesh", obstacle.mesh.is_some()),
+    ];
+    let given: Vec<&str> = shapes
+        .into_iter()
+        .filter_map(|(name, given)| given.then_some(name))
+        .collect();
+    exactly_one(path, &given, "plane, sphere, capsule, box, cylinder, mesh")?;
+    if let Some(plane) = &obstacle.plane {
+        check_direction(&at("plane.normal"), plane.normal)?;
+    }
+    optional_positive(
+        &at("sphere.radius"),
+        obstacle.sphere.as_ref().map(|s| s.radius),
+        "m",
+    )?;
+    if let Some(capsule) = &obstacle.capsule {
+        positive(&at("capsule.radius"), capsule.radius, "m")?;
+        if capsule.ends[0] == capsule.ends[1] {
+            let message = "the two ends are the same point".to_owned();
+            return Err(
+                error(Kind::OutOfRange, &at("capsule.ends"), message).with_help("use a sphere")
+            );
+        }
+    }
+    if let Some(mesh) = &obstacle.mesh {
+        check_mesh(&at("mesh"), mesh)?;
+    }
+    if let Some(rotate) = &obstacle.rotate {
+        check_rotation(&at("rotate"), rotate)?;
+    }
+    not_negative(&at("friction"), obstacle.friction, "")?;
+    check_motion(&at("motion"), &obstacle.motion)
+}
+
+fn check_motion(path: &str, motion: &MotionSpec) -> Checked {
+    if let Some(translate) = &motion.translate {
+        check_schedule(&format!("{path}.translate"), translate)?;
+    }
+    if let Some(rotate) = &motion.rotate {
+        check_direction(&format!("{path}.rotate.axis"), rotate.axis)?;
+        check_schedule(&format!("{path}.rotate.degrees"), &rotate.degrees)?;
+    }
+    Ok(())
+}
+
+fn check_schedule<T>(path: &str, schedule: &Schedule<T>) -> Checked {
+    if schedule.times.is_empty() {
+        return Err(
+            error(Kind::OutOfRange, path, "the schedule has no keys".into())
+                .with_help("write pairs [time, value], such as [[0.0, 0.0], [1.0, 1.0]]"),
+        );
+    }
+    for (key, pair) in schedule.times.windows(2).enumerate() {
+        if pair[1] <= pair[0] {
+            let message = format!(
+                "the times of a schedule must increase, but {} s is followed by {} s",
+                pair[0], pair[1]
+            );
+            return Err(error(
+                Kind::OutOfRange,
+                &format!("{path}.{}", key + 1),
+                message,
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn check_constraint(path: &str, constraint: &ConstraintSpec, spec: &SceneSpec) -> Checked {
+    let at = |key: &str| format!("{path}.{key}");
+    check_shell_name(&at("shell"), &constraint.shell, spec)?;
+    check_select(&at("select"), &constraint.select)?;
+    let axes = &constraint.axes;
+    let repeated = axes
+        .chars()
+        .enumerate()
+        .any(|(i, c)| axes.chars().take(i).any(|d| d == c));
+    if axes.is_empty() || repeated || axes.chars().any(|c| !"xyz".contains(c)) {
+        let message =
+            format!("axes must be some of x, y and z, each once, but they are \"{axes}\"");
+        return Err(error(Kind::UnknownName, &at("axes"), message)
+            .with_help("write \"xyz\", \"z\", \"xy\", …"));
+    }
+    optional_positive(&at("until"), constraint.until, "s")?;
+    check_motion(&at("motion"), &constraint.motion)
+}
+
+fn check_shell_name(path: &str, name: &str, spec: &SceneSpec) -> Checked {
+    let names: Vec<&str> = spec.shell.iter().map(|shell| shell.name.as_str()).collect();
+    if names.contains(&name) {
+        return Ok(());
+    }
+    Err(error(
+        Kind::UnknownName,
+        path,
+        format!("there is no shell '{name}'"),
+    )
+    .with_help(suggest(name, &names)))
+}
+
+fn check_select(path: &str, select: &SelectSpec) -> Checked {
+    let given = select.all
+        || select.cuboid.is_some()
+        || select.vertices.is_some()
+        || select.boundary.is_some()
+        || select.nearest.is_some();
+    if !given {
+        let message = "the selection has no condition".to_owned();
+        return Err(error(Kind::MissingKey, path, message)
+            .with_help("give some of all = true, box, vertices, boundary, nearest"));
+    }
+    if let Some(bounds) = &select.cuboid
+        && let Some(axis) = (0..3).find(|&axis| bounds.min[axis] > bounds.max[axis])
+    {
+        let (low, high) = (bounds.min[axis], bounds.max[axis]);
+        let message = format!(
+            "the box is empty along {}: min {low} is above max {high}",
+            ["x", "y", "z"][axis]
+        );
+        return Err(error(Kind::OutOfRange, &format!("{path}.box"), message));
+    }
+    Ok(())
+}
+
+fn check_probe(path: &str, probe: &ProbeSpec, spec: &SceneSpec) -> Checked {
+    let at = |key: &str| format!("{path}.{key}");
+    let (needed, what) = match probe.quantity {
+        ProbeQuantity::Energy => (None, "an energy"),
+        ProbeQuantity::Reaction => (Some("constraint"), "a reaction"),
+        _ => (Some("shell"), "this quantity"),
+    };
+    let keys = [
+        ("shell", probe.shell.is_some()),
+        ("constraint", probe.constraint.is_some()),
+        ("energy", probe.energy.is_some()),
+        ("select", probe.select.is_some()),
+    ];
+    for (key, given) in keys {
+        let allowed = needed == Some(key)
+            || key == "energy" && probe.quantity == ProbeQuantity::Energy
+            || key == "select" && needed == Some("shell");
+        if given && !allowed {
+            return Err(error(
+                Kind::Conflict,
+                &at(key),
+                format!("{what} takes no '{key}'"),
+            ));
+        }
+        if !given && needed == Some(key) {
+            return Err(error(
+                Kind::MissingKey,
+                path,
+                format!("the key '{key}' is missing: {what} needs it"),
+            ));
+        }
+    }
+    if let Some(shell) = &probe.shell {
+        check_shell_name(&at("shell"), shell, spec)?;
+    }
+    if let Some(select) = &probe.select {
+        check_select(&at("select"), select)?;
+    }
+    if let Some(name) = &probe.constraint {
+        let names: Vec<String> = (0..spec.constraint.len())
+            .map(|i| {
+                spec.constraint[i]
+                    .path(i)
+                    .trim_start_matches("constraint.")
+                    .to_owned()
+            })
+            .collect();
+        if !names.contains(name) {
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            return Err(error(
+                Kind::UnknownName,
+                &at("constraint"),
+                format!("there is no constraint '{name}'"),
+            )
+            .with_help(suggest(name, &names)));
+        }
+    }
+    Ok(())
+}
+
+fn check_contact_and_solver(spec: &SceneSpec) -> Checked {
+    let solver = &spec.solver;
+    optional_positive("contact.d_hat", spec.contact.d_hat, "m")?;
+    optional_positive("contact.kappa", spec.contact.kappa, "J/m²")?;
+    positive("contact.friction_speed", spec.contact.friction_speed, "m/s")?;
+    optional_positive(
+        "solver.velocity_tolerance",
+        solver.velocity_tolerance,
+        "m/s",
+    )?;
+    optional_positive(
+        "solver.displacement_tolerance",
+        solver.displacement_tolerance,
+        "m",
+    )?;
+    if solver.max_iterations == Some(0) {
+        let message = "there must be at least 1 iteration".to_owned();
+        return Err(error(Kind::OutOfRange, "solver.max_iterations", message));
+    }
+    Ok(())
+}
+
+fn check_output(spec: &SceneSpec) -> Checked {
+    let output = &spec.output;
+    if output.every_steps.is_some() && output.every_seconds.is_some() {
+        let message = "every_steps and every_seconds exclude each other".to_owned();
+        return Err(error(Kind::Conflict, "output.every_seconds", message));
+    }
+    if output.every_steps == Some(0) {
+        return Err(error(
+            Kind::OutOfRange,
+            "output.every_steps",
+            "must be at least 1".into(),
+        ));
+    }
+    optional_positive("output.every_seconds", output.every_seconds, "s")?;
+    let fields = output
+        .fields
+        .iter()
+        .enumerate()
+        .map(|(i, name)| (format!("output.fields.{i}"), name));
+    let color = output
+        .color
+        .iter()
+        .map(|name| ("output.color".to_owned(), name));
+    for (path, name) in fields.chain(color) {
+        if !FIELD_NAMES.contains(&name.as_str()) {
+            return Err(error(
+                Kind::UnknownName,
+                &path,
+                format!("there is no field '{name}'"),
+            )
+            .with_help(suggest(name, &FIELD_NAMES)));
+        }
+    }
+    Ok(())
+}
+
+fn unique<'a>(list: &str, names: impl Iterator<Item = Option<&'a str>>) -> Checked {
+    let mut seen: Vec<&str> = Vec::new();
+    for (index, name) in names.enumerate() {
+        let Some(name) = name else { continue };
+        let path = format!("{list}.{index}.name");
+        let plain = |c: char| c.is_alphanumeric() || "_-".contains(c);
+        if name.is_empty() || !name.chars().all(plain) || name.chars().all(|c| c.is_ascii_digit()) {
+            let message =
+                format!("\"{name}\" is no name: use letters, digits, '-' and '_', not only digits");
+            return Err(error(Kind::UnknownName, &path, message));
+        }
+        if seen.contains(&name) {
+            return Err(error(
+                Kind::Conflict,
+                &path,
+                format!("there are two {list}s named '{name}'"),
+            ));
+        }
+        seen.push(name);
+    }
+    Ok(())
+}
+
+fn exactly_one(path: &str, given: &[&str], all: &str) -> Checked {
+    match given {
+        [_] => Ok(()),
+        [] => Err(error(Kind::MissingKey, path, "no shape is given".into())
+            .with_help(format!("give exactly one of {all}"))),
+        [_, second, ..] => {
+            let message = format!("{} shapes are given: {}", given.len(), given.join(", "));
+            Err(error(Kind::Conflict, &format!("{path}.{second}"), message)
+                .with_help("keep one of them"))
+        }
+    }
+}
+
+fn positive(path: &str, value: f64, unit: &str) -> Checked {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    let key = path.rsplit('.').next().unwrap_or(path);
+    let message = format!(
+        "{key} must be larger than 0, but it is {}",
+        with_unit(value, unit)
+    );
+    Err(error(Kind::OutOfRange, path, message))
+}
+
+fn optional_positive(path: &str, value: Option<f64>, unit: &str) -> Checked {
+    value.map_or(Ok(()), |value| positive(path, value, unit))
+}
+
+fn not_negative(path: &str, value: f64, unit: &str) -> Checked {
+    if value.is_finite() && value >= 0.0 {
+        return Ok(());
+    }
+    let key = path.rsplit('.').next().unwrap_or(path);
+    let message = format!(
+        "{key} must not be negative, but it is {}",
+        with_unit(value, unit)
+    );
+    Err(error(Kind::OutOfRange, path, message))
+}
+
+fn with_unit(value: f64, unit: &str) -> String {
+    format!("{value} {unit}").trim_end().to_owned()
+}
+
+fn error(kind: Kind, path: &str, message: String) -> SceneError {
+    SceneError::new(kind, message).inside(path)
+}

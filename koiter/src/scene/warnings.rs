@@ -1,0 +1,93 @@
+//! Numbers that can be simulated but are probably a slip of unit.
+
+use super::error::Warning;
+use super::model::{Model, Shell};
+use super::spec::{SceneSpec, Units};
+
+/// Softer than any gel, harder than diamond.
+const PLAUSIBLE_YOUNG: [f64; 2] = [1e3, 1e12];
+/// Lighter than aerogel, heavier than osmium [kg/m³].
+const PLAUSIBLE_DENSITY: [f64; 2] = [1.0, 2.3e4];
+/// A shell larger than this [m] is probably in millimetres.
+const LARGE: f64 = 100.0;
+/// A shell smaller than this [m] is probably in a larger unit.
+const SMALL: f64 = 1e-4;
+/// The theory of thin shells and the contact stencils want triangles much larger than the thickness.
+const THICKNESS_TO_EDGE: f64 = 0.1;
+
+/// Everything implausible, in the order of the shells; locations are not yet known.
+pub(super) fn find(model: &Model, spec: &SceneSpec) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    for (shell, typed) in model.shells.iter().zip(&spec.shell) {
+        let path = format!("shell.{}", shell.name);
+        let preset = typed.material.preset.is_some();
+        if !preset || typed.material.young.is_some() {
+            warnings.extend(check_young(shell, &path));
+        }
+        let [low, high] = PLAUSIBLE_DENSITY;
+        if !(low..=high).contains(&shell.density) {
+            let message = format!("a density of {} kg/m³ is unusual", shell.density);
+            let help = "densities are in kg/m³: 1 g/cm³ is 1000; area densities are divided by the thickness";
+            warnings.push(warning(message, format!("{path}.material.density"), help));
+        }
+        warnings.extend(check_size(shell, &path, typed.mesh.units));
+        warnings.extend(check_thickness(shell, &path));
+    }
+    warnings
+}
+
+fn check_young(shell: &Shell, path: &str) -> Option<Warning> {
+    let [low, high] = PLAUSIBLE_YOUNG;
+    let young = shell.youngs_modulus;
+    let help = if young < low {
+        "moduli are in pascals: 1 MPa is 1e6, 1 GPa is 1e9"
+    } else if young > high {
+        "diamond has 1.2e12 Pa"
+    } else {
+        return None;
+    };
+    let message = format!("a Young's modulus of {young:e} Pa is unusual");
+    Some(warning(message, format!("{path}.material.young"), help))
+}
+
+fn check_size(shell: &Shell, path: &str, units: Units) -> Option<Warning> {
+    let (low, high) = shell.surface.bounding_box();
+    let size = (high - low).amax();
+    if (SMALL..=LARGE).contains(&size) {
+        return None;
+    }
+    let help = if size <= LARGE {
+        "is the unit of the mesh right? Lengths are in metres".to_owned()
+    } else if units == Units::Metre {
+        format!(
+            "if the file is in millimetres ({:.3} m), write units = \"mm\"",
+            size * 1e-3
+        )
+    } else {
+        "is the unit of the mesh right?".to_owned()
+    };
+    let message = format!("the mesh of shell '{}' is {size:.3e} m large", shell.name);
+    Some(warning(message, format!("{path}.mesh"), &help))
+}
+
+fn check_thickness(shell: &Shell, path: &str) -> Option<Warning> {
+    let edge = shell.surface.mean_edge_length();
+    if shell.thickness <= THICKNESS_TO_EDGE * edge {
+        return None;
+    }
+    let message = format!(
+        "the thickness of {:.3e} m is more than a tenth of the mean edge, {edge:.3e} m",
+        shell.thickness
+    );
+    let help = "thicknesses are in metres: 1 mm is 1e-3; triangles should be much larger than the thickness";
+    Some(warning(message, format!("{path}.thickness"), help))
+}
+
+fn warning(message: String, path: String, help: &str) -> Warning {
+    Warning {
+        message,
+        path,
+        location: None,
+        help: Some(help.to_owned()),
+    }
+}
