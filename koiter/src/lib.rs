@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod assembly;
+pub mod contact;
 pub mod energy;
 pub mod geometry;
 pub mod integrate;
@@ -11,6 +12,7 @@ pub mod material;
 pub mod mesh;
 pub mod rest;
 pub mod scene;
+pub mod solve;
 #[cfg(feature = "testing")]
 pub mod testing;
 

@@ -85,11 +85,13 @@ pub trait Energy: Send + Sync {
     fn name(&self) -> &'static str;
     /// Called before a minimisation starts at `q`: contact finds its candidates here.
     fn prepare(&mut self, _q: &[f64]) {}
+    /// Called before derivatives are asked for at `q`: contact collects its active pairs here.
+    fn begin_iteration(&mut self, _q: &[f64]) {}
     /// Φ(q) [J].
     fn value(&self, q: &[f64]) -> f64;
     /// Adds ∇Φ(q).
     fn add_gradient(&self, q: &[f64], gradient: &mut [f64]);
-    /// Adds ∇Φ(q) and ∇²Φ(q).
+    /// Adds ∇Φ(q) and ∇²Φ(q). `q` is that of the last [`Energy::begin_iteration`].
     fn add_derivatives(
         &self,
         q: &[f64],

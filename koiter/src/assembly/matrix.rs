@@ -106,8 +106,9 @@ impl Pattern {
     pub fn new(layout: &DofLayout, pairs: &CoupledPairs) -> Self {
         let num_nodes = layout.num_solved_nodes();
         let num_dofs = layout.num_solved_dofs();
-        let node_start: Vec<u32> =
-            (0..=num_nodes).map(|n| if n == num_nodes { num_dofs } else { layout.start(NodeId(n as u32)) } as u32).collect();
+        let node_start: Vec<u32> = (0..=num_nodes)
+            .map(|n| if n == num_nodes { num_dofs } else { layout.start(NodeId(n as u32)) } as u32)
+            .collect();
         let mut pattern = Self {
             node_start,
             block_start: Vec::with_capacity(num_nodes + 1),

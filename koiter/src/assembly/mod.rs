@@ -10,6 +10,7 @@ mod energy;
 mod matrix;
 mod parallel;
 mod projection;
+mod space;
 
 pub use assembled::Assembled;
 pub use dof::{Dof, DofLayout, NodeId};
@@ -17,3 +18,4 @@ pub use energy::{Energy, LocalEnergy, LocalHessian, PsdProjection, WorstElement}
 pub use matrix::{CoupledPairs, HessianBuilder, Pattern, PatternBuilder, SymmetricMatrix};
 pub use parallel::{ordered_sum, parallel_map};
 pub use projection::project_to_psd;
+pub use space::ConfigurationSpace;

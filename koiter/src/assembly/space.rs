@@ -1,0 +1,15 @@
+//! How unknowns of different kinds move and how far.
+
+/// The space the unknowns live in. `q` holds positions, edge angles, later directors and rotations.
+pub trait ConfigurationSpace: Send + Sync {
+    /// `out` = the configuration reached from `q` by the step `dq`.
+    fn retract(&self, q: &[f64], dq: &[f64], out: &mut [f64]) {
+        for ((o, x), d) in out.iter_mut().zip(q).zip(dq) {
+            *o = x + d;
+        }
+    }
+    /// The size of the step in metres: the largest displacement of a point of the surfaces. Infinite if not finite.
+    fn displacement(&self, q: &[f64], dq: &[f64]) -> f64;
+    /// The unknown in the user's terms.
+    fn describe(&self, dof: usize) -> String;
+}

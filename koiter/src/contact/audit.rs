@@ -1,0 +1,112 @@
+//! Do surfaces intersect? Decided with exact predicates, independently of distances, barriers and candidates.
+//!
+//! Two triangle meshes in general position intersect if and only if an edge of one crosses a face of the other, so all
+//! edges are tested against all faces with which they share no vertex. Signs of volumes come from adaptive-precision
+//! arithmetic (crate `robust`) and are right for every input. An edge that only touches a face counts as crossing; an
+//! edge in the plane of a face is left to the faces around it.
+
+use robust::{Coord3D, orient3d};
+
+use super::broad_phase::{Aabb, BoxTree};
+use crate::Vec3;
+
+/// An edge that crosses a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Intersection {
+    /// Index of the edge.
+    pub edge: u32,
+    /// Index of the face.
+    pub face: u32,
+}
+
+fn side(a: &Vec3, b: &Vec3, c: &Vec3, d: &Vec3) -> f64 {
+    let coord = |p: &Vec3| Coord3D {
+        x: p.x,
+        y: p.y,
+        z: p.z,
+    };
+    orient3d(coord(a), coord(b), coord(c), coord(d))
+}
+
+/// Whether the closed segment `p q` crosses the closed triangle `a b c`; false if it lies in the plane.
+fn crosses(p: &Vec3, q: &Vec3, [a, b, c]: [&Vec3; 3]) -> bool {
+    let (above, below) = (side(a, b, c, p), side(a, b, c, q));
+    if (above > 0.0 && below > 0.0)
+        || (above < 0.0 && below < 0.0)
+        || (above == 0.0 && below == 0.0)
+    {
+        return false;
+    }
+    let around = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
+    around.iter().all(|s| *s >= 0.0) || around.iter().all(|s| *s <= 0.0)
+}
+
+/// All edges that cross faces, by edge and then by face; pairs that share a vertex or for which `ignore` holds (by one
+/// vertex of each) are left out.
+pub fn intersections(
+    positions: &[Vec3],
+    edges: &[[u32; 2]],
+    faces: &[[u32; 3]],
+    ignore: impl Fn(u32, u32) -> bool + Sync + Send,
+) -> Vec<Intersection> {
+    let at = |v: u32| &positions[v as usize];
+    let face_boxes: Vec<Aabb> = faces
+        .iter()
+        .map(|f| Aabb::around(f.map(|v| *at(v)), 0.0))
+        .collect();
+    let edge_boxes: Vec<Aabb> = edges
+        .iter()
+        .map(|e| Aabb::around(e.map(|v| *at(v)), 0.0))
+        .collect();
+    let mut tree = BoxTree::default();
+    tree.rebuild(&face_boxes);
+    let mut found = tree.pairs(&edge_boxes, |edge, face| {
+        let (e, f) = (edges[edge as usize], faces[face as usize]);
+        !f.contains(&e[0])
+            && !f.contains(&e[1])
+            && !ignore(e[0], f[0])
+            && crosses(at(e[0]), at(e[1]), [at(f[0]), at(f[1]), at(f[2])])
+    });
+    found.sort_unstable();
+    found
+        .into_iter()
+        .map(|[edge, face]| Intersection { edge, face })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn v(x: f64, y: f64, z: f64) -> Vec3 {
+        Vec3::new(x, y, z)
+    }
+
+    #[test]
+    fn an_edge_through_a_face_is_found() {
+        let positions = [
+            v(0.0, 0.0, 0.0),
+            v(1.0, 0.0, 0.0),
+            v(0.0, 1.0, 0.0),
+            v(0.2, 0.2, -1.0),
+            v(0.2, 0.2, 1.0),
+        ];
+        let found = intersections(&positions, &[[3, 4]], &[[0, 1, 2]], |_, _| false);
+        assert_eq!(found, [Intersection { edge: 0, face: 0 }]);
+        assert!(intersections(&positions, &[[3, 4]], &[[0, 1, 2]], |_, _| true).is_empty());
+    }
+
+    #[test]
+    fn an_edge_beside_a_face_is_not() {
+        let mut positions = [
+            v(0.0, 0.0, 0.0),
+            v(1.0, 0.0, 0.0),
+            v(0.0, 1.0, 0.0),
+            v(0.8, 0.8, -1.0),
+            v(0.8, 0.8, 1.0),
+        ];
+        assert!(intersections(&positions, &[[3, 4]], &[[0, 1, 2]], |_, _| false).is_empty());
+        positions[3] = v(0.2, 0.2, 1e-300);
+        assert!(intersections(&positions, &[[3, 4]], &[[0, 1, 2]], |_, _| false).is_empty());
+    }
+}

@@ -1,0 +1,237 @@
+//! Which primitives may come near each other: a tree of axis-aligned boxes over Morton-sorted leaves.
+//!
+//! The tree's shape is that of an implicit binary heap over the sorted leaves, so it has no pointers and is refitted from
+//! the leaves upwards in one sweep. Its quality follows the order of the leaves; the order is kept while primitives move
+//! little and made anew otherwise ([`BoxTree::rebuild`]).
+
+use crate::Vec3;
+use crate::assembly::parallel_map;
+
+/// An axis-aligned box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Lowest coordinates.
+    pub low: [f64; 3],
+    /// Highest coordinates.
+    pub high: [f64; 3],
+}
+
+impl Aabb {
+    /// The empty box.
+    pub const EMPTY: Self = Self {
+        low: [f64::INFINITY; 3],
+        high: [f64::NEG_INFINITY; 3],
+    };
+
+    /// The smallest box around points, grown by `margin` on all sides.
+    #[inline]
+    pub fn around(points: impl IntoIterator<Item = Vec3>, margin: f64) -> Self {
+        let mut out = Self::EMPTY;
+        for p in points {
+            for axis in 0..3 {
+                out.low[axis] = out.low[axis].min(p[axis]);
+                out.high[axis] = out.high[axis].max(p[axis]);
+            }
+        }
+        for axis in 0..3 {
+            out.low[axis] -= margin;
+            out.high[axis] += margin;
+        }
+        out
+    }
+
+    #[inline]
+    fn union(&self, other: &Self) -> Self {
+        Self {
+            low: std::array::from_fn(|k| self.low[k].min(other.low[k])),
+            high: std::array::from_fn(|k| self.high[k].max(other.high[k])),
+        }
+    }
+
+    /// Whether two boxes share a point.
+    #[inline]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+    }
+}
+
+/// A binary tree of boxes over a set of primitives.
+#[derive(Clone, Debug, Default)]
+pub struct BoxTree {
+    /// Primitive of each leaf.
+    leaves: Vec<u32>,
+    /// Number of leaves, rounded up to a power of two.
+    width: usize,
+    /// Node 1 is the root; the children of node k are 2k and 2k + 1; leaf i is node `width + i`.
+    boxes: Vec<Aabb>,
+}
+
+/// The bits of `x` (21 of them) spread to every third place.
+fn spread(x: u64) -> u64 {
+    let mut x = x & 0x1f_ffff;
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    (x | x << 2) & 0x1249249249249249
+}
+
+impl BoxTree {
+    /// Sorts primitives along a Morton curve through their centres and fits the tree.
+    pub fn rebuild(&mut self, boxes: &[Aabb]) {
+        let all = boxes.iter().fold(Aabb::EMPTY, |all, b| all.union(b));
+        let code = |b: &Aabb| -> u64 {
+            (0..3).fold(0, |code, axis| {
+                let extent = all.high[axis] - all.low[axis];
+                let centre = 0.5 * (b.low[axis] + b.high[axis]) - all.low[axis];
+                let cell = if extent > 0.0 {
+                    (centre / extent * 2_097_151.0) as u64
+                } else {
+                    0
+                };
+                code | spread(cell) << axis
+            })
+        };
+        let mut keyed: Vec<(u64, u32)> = boxes
+            .iter()
+            .enumerate()
+            .map(|(i, b)| (code(b), i as u32))
+            .collect();
+        keyed.sort_unstable();
+        self.leaves = keyed.into_iter().map(|(_, leaf)| leaf).collect();
+        self.width = boxes.len().next_power_of_two();
+        self.refit(boxes);
+    }
+
+    /// Fits the tree to moved boxes of the same primitives.
+    pub fn refit(&mut self, boxes: &[Aabb]) {
+        self.boxes.clear();
+        self.boxes.resize(2 * self.width.max(1), Aabb::EMPTY);
+        for (i, &leaf) in self.leaves.iter().enumerate() {
+            self.boxes[self.width + i] = boxes[leaf as usize];
+        }
+        for node in (1..self.width).rev() {
+            self.boxes[node] = self.boxes[2 * node].union(&self.boxes[2 * node + 1]);
+        }
+    }
+
+    /// Number of primitives.
+    pub fn len(&self) -> usize {
+        self.leaves.len()
+    }
+
+    /// Whether there is no primitive.
+    pub fn is_empty(&self) -> bool {
+        self.leaves.is_empty()
+    }
+
+    /// Sum of the half surface areas of all inner boxes [m²]: grows as the order of the leaves gets worse.
+    pub fn cost(&self) -> f64 {
+        self.boxes[1.min(self.boxes.len())..self.width.min(self.boxes.len())]
+            .iter()
+            .filter(|b| b.low[0] <= b.high[0])
+            .map(|b| {
+                let [x, y, z] = std::array::from_fn(|k| b.high[k] - b.low[k]);
+                x * y + y * z + z * x
+            })
+            .sum()
+    }
+
+    /// Calls `found` with every primitive whose box overlaps `query`, in the order of the leaves.
+    #[inline]
+    pub fn overlapping(&self, query: &Aabb, mut found: impl FnMut(u32)) {
+        if self.leaves.is_empty() {
+            return;
+        }
+        let mut stack = [0usize; 64];
+        stack[0] = 1;
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let node = stack[depth];
+            if !self.boxes[node].overlaps(query) {
+                continue;
+            }
+            if node >= self.width {
+                found(self.leaves[node - self.width]);
+            } else {
+                stack[depth] = 2 * node + 1;
+                stack[depth + 1] = 2 * node;
+                depth += 2;
+            }
+        }
+    }
+
+    /// All pairs `(query, primitive)` with overlapping boxes for which `keep` holds, by query and then by leaf.
+    pub fn pairs(
+        &self,
+        queries: &[Aabb],
+        keep: impl Fn(u32, u32) -> bool + Sync + Send,
+    ) -> Vec<[u32; 2]> {
+        let chunks = queries.len().div_ceil(QUERY_CHUNK);
+        parallel_map(chunks, |chunk| {
+            let range = chunk * QUERY_CHUNK..((chunk + 1) * QUERY_CHUNK).min(queries.len());
+            let mut found = Vec::new();
+            for query in range {
+                self.overlapping(&queries[query], |leaf| {
+                    if keep(query as u32, leaf) {
+                        found.push([query as u32, leaf]);
+                    }
+                });
+            }
+            found
+        })
+        .concat()
+    }
+}
+
+/// Queries a task takes at a time.
+const QUERY_CHUNK: usize = 128;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn boxes(count: usize, seed: f64) -> Vec<Aabb> {
+        (0..count)
+            .map(|i| {
+                let at = |k: f64| ((i as f64 + seed) * k).sin() * 2.0;
+                Aabb::around([Vec3::new(at(1.3), at(2.7), at(3.1))], 0.2)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_tree_finds_exactly_the_overlapping_boxes() {
+        for count in [0, 1, 2, 3, 64, 301] {
+            let (a, b) = (boxes(count, 0.3), boxes(97, 0.7));
+            let mut tree = BoxTree::default();
+            tree.rebuild(&a);
+            let mut found = tree.pairs(&b, |_, _| true);
+            found.sort_unstable();
+            let mut expected = Vec::new();
+            for (j, q) in b.iter().enumerate() {
+                expected.extend(
+                    (0..count)
+                        .filter(|&i| q.overlaps(&a[i]))
+                        .map(|i| [j as u32, i as u32]),
+                );
+            }
+            assert_eq!(found, expected);
+        }
+    }
+
+    #[test]
+    fn a_refitted_tree_is_still_right() {
+        let (a, moved) = (boxes(200, 0.1), boxes(200, 5.0));
+        let mut tree = BoxTree::default();
+        tree.rebuild(&a);
+        tree.refit(&moved);
+        let mut count = 0;
+        tree.overlapping(&moved[7], |_| count += 1);
+        assert_eq!(
+            count,
+            moved.iter().filter(|b| b.overlaps(&moved[7])).count()
+        );
+    }
+}

@@ -1,0 +1,771 @@
+//! The barrier energy of everything that may touch.
+
+use super::barrier::LogBarrier;
+use super::broad_phase::{Aabb, BoxTree};
+use super::ccd::additive_ccd;
+use super::collision_mesh::CollisionMesh;
+use super::friction::{Friction, FrictionContact};
+use super::pair::{Pair, PairKind, derivatives, mollify};
+use super::plane::CollisionPlane;
+use crate::Vec3;
+use crate::assembly::{
+    Dof, DofLayout, Energy, HessianBuilder, PatternBuilder, PsdProjection, WorstElement,
+    ordered_sum, parallel_map,
+};
+use crate::geometry::ClosestPoints;
+
+/// The mollifier's threshold relative to the squared rest lengths of the two edges ("Incremental Potential Contact").
+const MOLLIFIER_THRESHOLD: f64 = 1e-3;
+
+/// When the smallest gap falls below this fraction of d̂ and keeps shrinking, the barrier is stiffened.
+const STIFFEN_BELOW: f64 = 0.02;
+
+/// The barrier is stiffened by at most this factor over a run.
+const LARGEST_STIFFENING: f64 = 1e6;
+
+/// Candidates a vertex, on average, before a step is searched in a shorter reach: bounds memory when a wild Newton step
+/// sweeps the whole scene. A sheet folded to a stack has about 70.
+const CANDIDATES_PER_VERTEX: usize = 400;
+
+/// Contact of all bodies of a scene.
+pub struct Contact {
+    mesh: CollisionMesh,
+    planes: Vec<CollisionPlane>,
+    layout: DofLayout,
+    d_hat: f64,
+    kappa: f64,
+    largest_kappa: f64,
+    face_tree: SweptTree,
+    edge_tree: SweptTree,
+    candidates: Vec<Pair>,
+    active: Vec<ActivePair>,
+    active_planes: Vec<ActiveVertex>,
+    smallest_gap: f64,
+    limiter: Option<Limiter>,
+}
+
+/// A tree whose leaf order is kept until it has become this much worse than when it was made.
+#[derive(Default)]
+struct SweptTree {
+    tree: BoxTree,
+    cost_when_built: f64,
+}
+
+impl SweptTree {
+    fn update(&mut self, boxes: &[Aabb]) {
+        if self.tree.len() == boxes.len() {
+            self.tree.refit(boxes);
+            if self.tree.cost() <= 1.5 * self.cost_when_built {
+                return;
+            }
+        }
+        self.tree.rebuild(boxes);
+        self.cost_when_built = self.tree.cost();
+    }
+}
+
+struct ActivePair {
+    pair: Pair,
+    positions: [Vec3; 4],
+    closest: ClosestPoints,
+    barrier: LogBarrier,
+    threshold: f64,
+    /// Area the pair stands for [m²].
+    area: f64,
+}
+
+struct ActiveVertex {
+    vertex: u32,
+    plane: usize,
+    distance: f64,
+}
+
+enum Limiter {
+    Pair(Pair),
+    Plane(u32, usize),
+    Reach,
+}
+
+/// What a contact energy tells after a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ContactStatistics {
+    /// Active pairs.
+    pub contacts: usize,
+    /// Smallest gap between surfaces [m]; infinity when nothing is within reach.
+    pub min_gap: f64,
+    /// Barrier stiffness [J/m²].
+    pub kappa: f64,
+}
+
+/// Two primitives that touch or overlap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchingPair {
+    /// The primitives in the user's terms.
+    pub description: String,
+    /// Gap between the surfaces [m], not positive.
+    pub gap: f64,
+    /// Vertices in the collision mesh.
+    pub vertices: Vec<u32>,
+}
+
+/// A start configuration that touches or intersects.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", self.message())]
+pub struct StartError {
+    /// What touches, worst first.
+    pub pairs: Vec<TouchingPair>,
+    /// Whether any of them intersect (rather than being closer than their thickness).
+    pub intersects: bool,
+}
+
+impl StartError {
+    fn message(&self) -> String {
+        let verb = if self.intersects {
+            "intersects"
+        } else {
+            "touches"
+        };
+        let mut text = format!(
+            "the start configuration {verb} itself or an obstacle in {} places:",
+            self.pairs.len()
+        );
+        for pair in self.pairs.iter().take(5) {
+            text += &format!("\n  {} (gap {:.3e} m)", pair.description, pair.gap);
+        }
+        if self.pairs.len() > 5 {
+            text += &format!("\n  … and {} more", self.pairs.len() - 5);
+        }
+        text + "\nmove the parts apart, or reduce the contact thickness"
+    }
+}
+
+impl Contact {
+    /// `d_hat` [m] gap at which the barrier begins, `kappa` [J/m²] its stiffness an area.
+    pub fn new(
+        mesh: CollisionMesh,
+        planes: Vec<CollisionPlane>,
+        layout: DofLayout,
+        d_hat: f64,
+        kappa: f64,
+    ) -> Self {
+        Self {
+            mesh,
+            planes,
+            layout,
+            d_hat,
+            kappa,
+            largest_kappa: kappa * LARGEST_STIFFENING,
+            face_tree: SweptTree::default(),
+            edge_tree: SweptTree::default(),
+            candidates: Vec::new(),
+            active: Vec::new(),
+            active_planes: Vec::new(),
+            smallest_gap: f64::INFINITY,
+            limiter: None,
+        }
+    }
+
+    /// The collision mesh.
+    pub fn mesh(&self) -> &CollisionMesh {
+        &self.mesh
+    }
+
+    /// Barrier stiffness [J/m²].
+    pub fn kappa(&self) -> f64 {
+        self.kappa
+    }
+
+    /// Restores the barrier stiffness of an earlier state.
+    pub fn set_kappa(&mut self, kappa: f64) {
+        self.kappa = kappa;
+    }
+
+    fn positions(&self, q: &[f64]) -> Vec<Vec3> {
+        (0..self.mesh.vertices.len() as u32)
+            .map(|v| self.mesh.position(v, q))
+            .collect()
+    }
+
+    fn touching_distance(&self, pair: &Pair) -> f64 {
+        let other = if pair.kind == PairKind::VertexFace {
+            1
+        } else {
+            2
+        };
+        self.mesh.offset(pair.vertices[0]) + self.mesh.offset(pair.vertices[other])
+    }
+
+    /// Finds all pairs that come within d̂ of touching anywhere between `x` and `x + dx`; false if there are too many.
+    fn find_candidates(&mut self, x: &[Vec3], dx: Option<&[Vec3]>) -> bool {
+        let mesh = &self.mesh;
+        let swept = |vertices: &[u32]| {
+            let margin = mesh.offset(vertices[0]) + 0.5 * self.d_hat;
+            let at = |v: &u32| x[*v as usize];
+            match dx {
+                None => Aabb::around(vertices.iter().map(at), margin),
+                Some(dx) => Aabb::around(
+                    vertices
+                        .iter()
+                        .flat_map(|v| [at(v), at(v) + dx[*v as usize]]),
+                    margin,
+                ),
+            }
+        };
+        let limit = CANDIDATES_PER_VERTEX * mesh.vertices.len() + 100_000;
+        let vertex_boxes = parallel_map(mesh.vertices.len(), |v| swept(&[v as u32]));
+        let edge_boxes = parallel_map(mesh.edges.len(), |e| swept(&mesh.edges[e]));
+        let face_boxes = parallel_map(mesh.faces.len(), |f| swept(&mesh.faces[f]));
+        self.face_tree.update(&face_boxes);
+        self.edge_tree.update(&edge_boxes);
+        let both_obstacles = |a: u32, b: u32| mesh.is_obstacle(a) && mesh.is_obstacle(b);
+        let vertex_faces = self.face_tree.tree.pairs(&vertex_boxes, |v, f| {
+            let face = &mesh.faces[f as usize];
+            !face.contains(&v) && !both_obstacles(v, face[0])
+        });
+        if vertex_faces.len() > limit {
+            return false;
+        }
+        let edge_edges = self.edge_tree.tree.pairs(&edge_boxes, |a, b| {
+            let (first, second) = (&mesh.edges[a as usize], &mesh.edges[b as usize]);
+            a < b
+                && !second.contains(&first[0])
+                && !second.contains(&first[1])
+                && !both_obstacles(first[0], second[0])
+        });
+        if vertex_faces.len() + edge_edges.len() > limit {
+            return false;
+        }
+        let faces = vertex_faces.iter().map(|&[v, f]| {
+            let [a, b, c] = mesh.faces[f as usize];
+            Pair {
+                kind: PairKind::VertexFace,
+                vertices: [v, a, b, c],
+            }
+        });
+        let edges = edge_edges.iter().map(|&[a, b]| {
+            let ([a0, a1], [b0, b1]) = (mesh.edges[a as usize], mesh.edges[b as usize]);
+            Pair {
+                kind: PairKind::EdgeEdge,
+                vertices: [a0, a1, b0, b1],
+            }
+        });
+        self.candidates = faces.chain(edges).collect();
+        true
+    }
+
+    /// The pair with all its barrier needs, if it is active.
+    #[inline]
+    fn activate(&self, pair: &Pair, q: &[f64]) -> Option<ActivePair> {
+        let positions = pair.vertices.map(|v| self.mesh.position(v, q));
+        let closest = pair.closest(&positions);
+        let barrier = LogBarrier::new(self.touching_distance(pair), self.d_hat);
+        barrier
+            .is_active(closest.distance_squared)
+            .then(|| ActivePair {
+                pair: *pair,
+                positions,
+                closest,
+                barrier,
+                threshold: self.mollifier_threshold(pair),
+                area: self.area(pair),
+            })
+    }
+
+    fn mollifier_threshold(&self, pair: &Pair) -> f64 {
+        if pair.kind == PairKind::VertexFace {
+            return 0.0;
+        }
+        let rest = |a: u32, b: u32| self.mesh.rest_length_squared(a, b);
+        MOLLIFIER_THRESHOLD
+            * rest(pair.vertices[0], pair.vertices[1])
+            * rest(pair.vertices[2], pair.vertices[3])
+    }
+
+    /// The area a pair stands for: that of its primitive on a shell, so that coarse obstacles are no stiffer than fine
+    /// ones; the mean where both are on shells.
+    fn area(&self, pair: &Pair) -> f64 {
+        let [a, b, c, d] = pair.vertices;
+        match pair.kind {
+            PairKind::VertexFace if self.mesh.is_obstacle(a) => self.mesh.face_area(&[b, c, d]),
+            PairKind::VertexFace => self.mesh.vertex_areas[a as usize],
+            PairKind::EdgeEdge => {
+                let (first, second) = (self.mesh.edge_area(a, b), self.mesh.edge_area(c, d));
+                match (self.mesh.is_obstacle(a), self.mesh.is_obstacle(c)) {
+                    (false, false) => 0.5 * (first + second),
+                    (true, _) => second,
+                    (_, true) => first,
+                }
+            }
+        }
+    }
+
+    fn plane_barrier(&self, vertex: u32) -> LogBarrier {
+        LogBarrier::new(self.mesh.offset(vertex), self.d_hat)
+    }
+
+    /// Vertices of shells near a plane, as `(vertex, plane, distance)`.
+    fn near_planes(&self, q: &[f64]) -> Vec<ActiveVertex> {
+        let mut near = Vec::new();
+        for (plane, obstacle) in self.planes.iter().enumerate() {
+            let distances = parallel_map(self.mesh.vertices.len(), |v| {
+                let vertex = v as u32;
+                let distance = obstacle.distance(&self.mesh.position(vertex, q), q);
+                let close = distance - self.mesh.offset(vertex) < self.d_hat;
+                (close && !self.mesh.is_obstacle(vertex)).then_some(distance)
+            });
+            let found = distances.iter().enumerate();
+            near.extend(found.filter_map(|(v, d)| {
+                d.map(|distance| ActiveVertex {
+                    vertex: v as u32,
+                    plane,
+                    distance,
+                })
+            }));
+        }
+        near
+    }
+
+    fn plane_value(&self, near: &ActiveVertex) -> f64 {
+        if near.distance <= 0.0 {
+            return f64::INFINITY;
+        }
+        let barrier = self
+            .plane_barrier(near.vertex)
+            .value(near.distance * near.distance);
+        self.kappa * self.mesh.vertex_areas[near.vertex as usize] * barrier
+    }
+
+    /// Force of a plane on a vertex along the normal, and its slope by the distance.
+    fn plane_derivatives(&self, near: &ActiveVertex) -> [f64; 2] {
+        let [_, first, second] = self
+            .plane_barrier(near.vertex)
+            .derivatives(near.distance * near.distance);
+        let scale = self.kappa * self.mesh.vertex_areas[near.vertex as usize];
+        [
+            scale * first * 2.0 * near.distance,
+            scale * (4.0 * second * near.distance * near.distance + 2.0 * first),
+        ]
+    }
+
+    /// Statistics at the state of the last [`Energy::begin_iteration`] or [`Contact::refresh`].
+    pub fn statistics(&self) -> ContactStatistics {
+        let contacts = self.active.len() + self.active_planes.len();
+        ContactStatistics {
+            contacts,
+            min_gap: self.smallest_gap,
+            kappa: self.kappa,
+        }
+    }
+
+    /// Collects the active pairs at `q` among the candidates.
+    pub fn refresh(&mut self, q: &[f64]) {
+        self.active = parallel_map(self.candidates.len(), |i| {
+            self.activate(&self.candidates[i], q)
+        })
+        .into_iter()
+        .flatten()
+        .collect();
+        self.active_planes = self.near_planes(q);
+        let pairs = self
+            .active
+            .iter()
+            .map(|a| a.closest.distance_squared.sqrt() - a.barrier.touching_distance);
+        let planes = self
+            .active_planes
+            .iter()
+            .map(|a| a.distance - self.mesh.offset(a.vertex));
+        self.smallest_gap = pairs.chain(planes).fold(f64::INFINITY, f64::min);
+    }
+
+    /// Normal forces and tangents at the last refresh, as the friction of the coming step.
+    pub fn lag(&self, friction: &mut Friction) {
+        let coefficient = |a: f64, b: f64| (a * b).sqrt();
+        let of_body = |v: u32| self.mesh.bodies[self.mesh.body[v as usize] as usize].friction;
+        friction.contacts.clear();
+        for active in &self.active {
+            let other = if active.pair.kind == PairKind::VertexFace {
+                1
+            } else {
+                2
+            };
+            let mu = coefficient(
+                of_body(active.pair.vertices[0]),
+                of_body(active.pair.vertices[other]),
+            );
+            let distance = active.closest.distance_squared.sqrt();
+            let slope = active.barrier.derivatives(active.closest.distance_squared)[1];
+            let m = mollify(&active.positions, active.threshold);
+            let force = -2.0 * self.kappa * active.area * m * slope * distance;
+            if mu * force > 0.0 {
+                friction.contacts.push(FrictionContact {
+                    points: active.pair.vertices.map(|v| self.mesh.vertices[v as usize]),
+                    weights: active.closest.weights,
+                    normal: active.closest.separation / distance,
+                    limit: mu * force,
+                });
+            }
+        }
+        for near in &self.active_planes {
+            let plane = &self.planes[near.plane];
+            let limit = coefficient(of_body(near.vertex), plane.friction)
+                * -self.plane_derivatives(near)[0];
+            if limit > 0.0 {
+                let vertex = self.mesh.vertices[near.vertex as usize];
+                friction.contacts.push(FrictionContact {
+                    points: [vertex, plane.point, plane.point, plane.point],
+                    weights: [1.0, -1.0, 0.0, 0.0],
+                    normal: plane.normal,
+                    limit,
+                });
+            }
+        }
+    }
+
+    /// Everything that touches or intersects at `q`: by exact predicates for meshes, by distance for thickness, balls,
+    /// capsules and planes.
+    pub fn touching(&mut self, q: &[f64]) -> Vec<TouchingPair> {
+        let x = self.positions(q);
+        let mesh = &self.mesh;
+        let both_obstacles = |a: u32, b: u32| mesh.is_obstacle(a) && mesh.is_obstacle(b);
+        let mut found: Vec<TouchingPair> =
+            super::intersections(&x, &mesh.edges, &mesh.faces, both_obstacles)
+                .into_iter()
+                .map(|hit| {
+                    let (edge, face) =
+                        (mesh.edges[hit.edge as usize], mesh.faces[hit.face as usize]);
+                    let description = format!(
+                        "{} crosses {}",
+                        mesh.describe("edge", &edge),
+                        mesh.describe("face", &face)
+                    );
+                    TouchingPair {
+                        description,
+                        gap: 0.0,
+                        vertices: edge.into_iter().chain(face).collect(),
+                    }
+                })
+                .collect();
+        if !self.find_candidates(&x, None) {
+            return found;
+        }
+        let mesh = &self.mesh;
+        for pair in &self.candidates {
+            let positions = pair.vertices.map(|v| x[v as usize]);
+            let gap =
+                pair.closest(&positions).distance_squared.sqrt() - self.touching_distance(pair);
+            if gap <= 0.0 {
+                let [a, b, c, d] = pair.vertices;
+                let description = match pair.kind {
+                    PairKind::VertexFace => {
+                        format!(
+                            "{} touches {}",
+                            mesh.describe_vertex(a),
+                            mesh.describe("face", &[b, c, d])
+                        )
+                    }
+                    PairKind::EdgeEdge => {
+                        format!(
+                            "{} touches {}",
+                            mesh.describe("edge", &[a, b]),
+                            mesh.describe("edge", &[c, d])
+                        )
+                    }
+                };
+                found.push(TouchingPair {
+                    description,
+                    gap,
+                    vertices: pair.vertices.to_vec(),
+                });
+            }
+        }
+        for near in self.near_planes(q) {
+            let gap = near.distance - mesh.offset(near.vertex);
+            if gap <= 0.0 {
+                let name = &self.planes[near.plane].name;
+                let description =
+                    format!("{} is below '{name}'", mesh.describe_vertex(near.vertex));
+                found.push(TouchingPair {
+                    description,
+                    gap,
+                    vertices: vec![near.vertex],
+                });
+            }
+        }
+        found.sort_by(|a, b| a.gap.total_cmp(&b.gap));
+        found
+    }
+
+    /// Refuses a start that touches or intersects.
+    ///
+    /// # Errors
+    /// What touches.
+    pub fn check_start(&mut self, q: &[f64]) -> Result<(), StartError> {
+        let pairs = self.touching(q);
+        if pairs.is_empty() {
+            return Ok(());
+        }
+        let intersects = pairs
+            .iter()
+            .any(|p| p.description.contains("crosses") || p.description.contains("below"));
+        Err(StartError { pairs, intersects })
+    }
+
+    fn describe_pair(&self, pair: &Pair) -> String {
+        let [a, b, c, d] = pair.vertices;
+        match pair.kind {
+            PairKind::VertexFace => {
+                format!(
+                    "{} against {}",
+                    self.mesh.describe_vertex(a),
+                    self.mesh.describe("face", &[b, c, d])
+                )
+            }
+            PairKind::EdgeEdge => {
+                format!(
+                    "{} against {}",
+                    self.mesh.describe("edge", &[a, b]),
+                    self.mesh.describe("edge", &[c, d])
+                )
+            }
+        }
+    }
+
+    /// Conservative bound of the step against planes: a tenth of every gap is kept.
+    fn plane_bound(
+        &self,
+        x: &[Vec3],
+        dx: &[Vec3],
+        q: &[f64],
+        direction: &[f64],
+    ) -> (f64, Option<Limiter>) {
+        let mut bound = (1.0, None);
+        for (index, plane) in self.planes.iter().enumerate() {
+            for v in (0..x.len() as u32).filter(|&v| !self.mesh.is_obstacle(v)) {
+                let gap = plane.distance(&x[v as usize], q) - self.mesh.offset(v);
+                let approach = -plane.approach(&dx[v as usize], direction);
+                if approach * bound.0 > 0.9 * gap {
+                    bound = (
+                        (0.9 * gap / approach).max(0.0),
+                        Some(Limiter::Plane(v, index)),
+                    );
+                }
+            }
+        }
+        bound
+    }
+}
+
+impl Energy for Contact {
+    fn name(&self) -> &'static str {
+        "contact"
+    }
+
+    fn prepare(&mut self, q: &[f64]) {
+        let x = self.positions(q);
+        if !self.find_candidates(&x, None) {
+            log::warn!(
+                "more candidate pairs than fit in memory: is d_hat larger than the mesh's edges?"
+            );
+        }
+        self.smallest_gap = f64::INFINITY;
+    }
+
+    fn begin_iteration(&mut self, q: &[f64]) {
+        let before = self.smallest_gap;
+        self.refresh(q);
+        let shrinking = self.smallest_gap < before;
+        if shrinking
+            && self.smallest_gap < STIFFEN_BELOW * self.d_hat
+            && self.kappa < self.largest_kappa
+        {
+            self.kappa *= 2.0;
+        }
+    }
+
+    fn value(&self, q: &[f64]) -> f64 {
+        let pairs = ordered_sum(self.candidates.len(), |i| {
+            match self.activate(&self.candidates[i], q) {
+                None => 0.0,
+                Some(active) => {
+                    let b = active.barrier.value(active.closest.distance_squared);
+                    self.kappa * active.area * mollify(&active.positions, active.threshold) * b
+                }
+            }
+        });
+        pairs
+            + self
+                .near_planes(q)
+                .iter()
+                .map(|near| self.plane_value(near))
+                .sum::<f64>()
+    }
+
+    fn add_gradient(&self, _q: &[f64], gradient: &mut [f64]) {
+        let locals = parallel_map(self.active.len(), |i| {
+            self.pair_derivatives(i, PsdProjection::Exact).0
+        });
+        for (active, local) in self.active.iter().zip(&locals) {
+            for (k, &v) in active.pair.vertices.iter().enumerate() {
+                let start = self.mesh.vertices[v as usize].0 as usize;
+                for axis in 0..3 {
+                    gradient[start + axis] += local[3 * k + axis];
+                }
+            }
+        }
+        for near in &self.active_planes {
+            self.add_plane_gradient(near, self.plane_derivatives(near)[0], gradient);
+        }
+    }
+
+    fn add_derivatives(
+        &self,
+        _q: &[f64],
+        projection: PsdProjection,
+        gradient: &mut [f64],
+        hessian: &mut HessianBuilder<'_>,
+    ) {
+        const BATCH: usize = 4096;
+        for first in (0..self.active.len()).step_by(BATCH) {
+            let count = BATCH.min(self.active.len() - first);
+            let locals = parallel_map(count, |k| self.pair_derivatives(first + k, projection));
+            for (active, (local, block)) in self.active[first..].iter().zip(&locals) {
+                let dofs = active.pair.vertices.map(|v| self.mesh.vertices[v as usize]);
+                for i in 0..4 {
+                    for axis in 0..3 {
+                        gradient[dofs[i].0 as usize + axis] += local[3 * i + axis];
+                    }
+                    for j in 0..=i {
+                        let (a, b) = (self.layout.node(dofs[i]), self.layout.node(dofs[j]));
+                        hessian.add(a, b, i == j, |r, c| block[(3 * i + r, 3 * j + c)]);
+                    }
+                }
+            }
+        }
+        for near in &self.active_planes {
+            let [first, second] = self.plane_derivatives(near);
+            self.add_plane_gradient(near, first, gradient);
+            let stiffness = if projection == PsdProjection::Clamp {
+                second.max(0.0)
+            } else {
+                second
+            };
+            let plane = &self.planes[near.plane];
+            let block = plane.normal * plane.normal.transpose() * stiffness;
+            let (v, p) = (
+                self.node(self.mesh.vertices[near.vertex as usize]),
+                self.node(plane.point),
+            );
+            hessian.add(v, v, true, |r, c| block[(r, c)]);
+            hessian.add(p, v, false, |r, c| -block[(r, c)]);
+        }
+    }
+
+    fn add_to_pattern(&self, _q: &[f64], pattern: &mut PatternBuilder) {
+        for active in &self.active {
+            pattern.couple(
+                active
+                    .pair
+                    .vertices
+                    .map(|v| self.node(self.mesh.vertices[v as usize])),
+            );
+        }
+    }
+
+    fn has_changing_pattern(&self) -> bool {
+        true
+    }
+
+    fn max_step(&mut self, q: &[f64], direction: &[f64]) -> f64 {
+        let x = self.positions(q);
+        let mut dx = self.positions(direction);
+        let mut reach = 1.0;
+        self.limiter = None;
+        while !self.find_candidates(&x, Some(&dx)) {
+            // 40 halvings bring any finite step below d̂; a scene too dense even then keeps its last candidates.
+            reach *= 0.5;
+            if reach < 1e-12 {
+                self.limiter = Some(Limiter::Reach);
+                return 0.0;
+            }
+            dx.iter_mut().for_each(|d| *d *= 0.5);
+            self.limiter = Some(Limiter::Reach);
+        }
+        let bounds = parallel_map(self.candidates.len(), |i| {
+            let pair = &self.candidates[i];
+            let at = |of: &[Vec3]| pair.vertices.map(|v| of[v as usize]);
+            additive_ccd(pair, &at(&x), &at(&dx), self.touching_distance(pair))
+        });
+        let mut bound = 1.0;
+        for (pair, &fraction) in self.candidates.iter().zip(&bounds) {
+            if fraction < bound {
+                bound = fraction;
+                self.limiter = Some(Limiter::Pair(*pair));
+            }
+        }
+        let (by_plane, limiter) = self.plane_bound(&x, &dx, q, direction);
+        // The planes' own motion is not scaled with the reach: their bound is for the whole direction.
+        if by_plane < bound {
+            bound = by_plane;
+            self.limiter = limiter;
+        }
+        bound * reach
+    }
+
+    fn worst_element(&self, _q: &[f64]) -> Option<WorstElement> {
+        let norms = parallel_map(self.active.len(), |i| {
+            self.pair_derivatives(i, PsdProjection::Exact).0.norm()
+        });
+        let worst = (0..norms.len()).max_by(|&a, &b| norms[a].total_cmp(&norms[b]))?;
+        let description = self.describe_pair(&self.active[worst].pair);
+        Some(WorstElement {
+            description,
+            gradient_norm: norms[worst],
+        })
+    }
+
+    fn step_limiter(&self) -> Option<String> {
+        Some(match self.limiter.as_ref()? {
+            Limiter::Pair(pair) => format!("contact of {}", self.describe_pair(pair)),
+            Limiter::Plane(vertex, plane) => {
+                format!(
+                    "contact of {} with '{}'",
+                    self.mesh.describe_vertex(*vertex),
+                    self.planes[*plane].name
+                )
+            }
+            Limiter::Reach => "the number of candidate pairs".into(),
+        })
+    }
+}
+
+impl Contact {
+    fn node(&self, dof: Dof) -> crate::assembly::NodeId {
+        self.layout.node(dof)
+    }
+
+    fn pair_derivatives(
+        &self,
+        index: usize,
+        projection: PsdProjection,
+    ) -> (nalgebra::SVector<f64, 12>, nalgebra::SMatrix<f64, 12, 12>) {
+        let active = &self.active[index];
+        let (gradient, hessian) = derivatives(
+            &active.closest,
+            &active.barrier,
+            &active.positions,
+            active.threshold,
+            projection,
+        );
+        let scale = self.kappa * active.area;
+        (gradient * scale, hessian * scale)
+    }
+
+    fn add_plane_gradient(&self, near: &ActiveVertex, slope: f64, gradient: &mut [f64]) {
+        let plane = &self.planes[near.plane];
+        let vertex = self.mesh.vertices[near.vertex as usize].0 as usize;
+        for axis in 0..3 {
+            gradient[vertex + axis] += slope * plane.normal[axis];
+            gradient[plane.point.0 as usize + axis] -= slope * plane.normal[axis];
+        }
+    }
+}

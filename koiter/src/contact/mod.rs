@@ -1,0 +1,26 @@
+//! Contact without intersection: incremental potential contact between shells, and with obstacles.
+//!
+//! All surfaces form one [`CollisionMesh`] whose vertices, edges and faces carry an offset (half a thickness; the radius
+//! of a ball or capsule). A pair of primitives touches when their distance is the sum of their offsets; its gap is what
+//! is left. Pairs are found once a line search ([`broad_phase`]), bound the step ([`ccd`]), and push ([`barrier`]).
+//! Reference: Li et al., "Incremental Potential Contact" (2020); Li, Kaufman, Jiang, "Codimensional IPC" (2021).
+
+mod audit;
+mod barrier;
+mod broad_phase;
+mod ccd;
+mod collision_mesh;
+mod energy;
+mod friction;
+mod pair;
+mod plane;
+
+pub use audit::{Intersection, intersections};
+pub use barrier::LogBarrier;
+pub use broad_phase::{Aabb, BoxTree};
+pub use ccd::additive_ccd;
+pub use collision_mesh::{CollisionBody, CollisionMesh};
+pub use energy::{Contact, ContactStatistics, StartError, TouchingPair};
+pub use friction::Friction;
+pub use pair::{Pair, PairKind};
+pub use plane::CollisionPlane;

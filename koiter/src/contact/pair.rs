@@ -1,0 +1,287 @@
+//! Vertex–face and edge–edge pairs: their distance, their barrier, and its derivatives in closed form.
+//!
+//! The energy of a pair is `κ A m(c) b(D)` with the barrier b ([`LogBarrier`]), the area A that the pair stands for, and
+//! for edges the mollifier
+//!
+//! ```text
+//! m(c) = (2 − c/ε) c/ε for c < ε, else 1;     c = |e_a × e_b|²,  ε = 10⁻³ |ē_a|² |ē_b|²
+//! ```
+//!
+//! which fades nearly parallel pairs, where the distance has no second derivative. With r the separation, w the weights
+//! of the points, and the slides t_k, v_k of [`ClosestPoints`], the Hessian of b(D) is
+//!
+//! ```text
+//! (4 b'' |r|² + 2 b') (w ⊗ r̂)² + 2 b' Σ_m (w ⊗ m̂)² − 2 b' Σ_k [ (w ⊗ t_k)(v_k ⊗ r)ᵀ + ᵀ + (v_k ⊗ r)² ]
+//! ```
+//!
+//! with m̂ the directions orthogonal to r and to every t_k. Since b' < 0, the second term is negative; in the third,
+//! `w ⊗ t_k` and `v_k ⊗ r` are orthogonal, so each summand has a 2 × 2 positive part in closed form.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::barrier::LogBarrier;
+use crate::Vec3;
+use crate::assembly::{PsdProjection, project_to_psd};
+use crate::geometry::{ClosestPoints, edge_edge, point_triangle};
+
+/// What a pair is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PairKind {
+    /// Vertex 0 and the face of vertices 1, 2, 3.
+    VertexFace,
+    /// The edges of vertices 0, 1 and of vertices 2, 3.
+    EdgeEdge,
+}
+
+/// Two primitives that may touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pair {
+    /// Which primitives.
+    pub kind: PairKind,
+    /// Their vertices in the collision mesh.
+    pub vertices: [u32; 4],
+}
+
+impl Pair {
+    /// Closest points at the given positions of the four vertices.
+    #[inline]
+    pub fn closest(&self, x: &[Vec3; 4]) -> ClosestPoints {
+        match self.kind {
+            PairKind::VertexFace => point_triangle(&x[0], &x[1], &x[2], &x[3]),
+            PairKind::EdgeEdge => edge_edge(&x[0], &x[1], &x[2], &x[3]),
+        }
+    }
+}
+
+/// m and its derivative m', at `c` with threshold ε: value 1 beyond it.
+fn mollifier(c: f64, threshold: f64) -> [f64; 3] {
+    let ratio = c / threshold;
+    if ratio >= 1.0 {
+        [1.0, 0.0, 0.0]
+    } else {
+        [
+            ratio * (2.0 - ratio),
+            2.0 * (1.0 - ratio) / threshold,
+            -2.0 / (threshold * threshold),
+        ]
+    }
+}
+
+fn squared_sine(x: &[Vec3; 4]) -> f64 {
+    (x[1] - x[0]).cross(&(x[3] - x[2])).norm_squared()
+}
+
+/// m for a pair; `threshold` is ε, or 0 for pairs without mollifier.
+pub(super) fn mollify(x: &[Vec3; 4], threshold: f64) -> f64 {
+    if threshold > 0.0 {
+        mollifier(squared_sine(x), threshold)[0]
+    } else {
+        1.0
+    }
+}
+
+/// Gradient and Hessian of `m(c) b(D)`.
+pub(super) fn derivatives(
+    closest: &ClosestPoints,
+    barrier: &LogBarrier,
+    x: &[Vec3; 4],
+    threshold: f64,
+    projection: PsdProjection,
+) -> (SVector<f64, 12>, SMatrix<f64, 12, 12>) {
+    let [value, first, second] = barrier.derivatives(closest.distance_squared);
+    let outer = |a: &[f64; 4], v: &Vec3| SVector::<f64, 12>::from_fn(|i, _| a[i / 3] * v[i % 3]);
+    let distance_gradient = outer(&closest.weights, &closest.separation) * 2.0;
+    let clamp = projection == PsdProjection::Clamp;
+    let [m, m1, m2] = if threshold > 0.0 {
+        mollifier(squared_sine(x), threshold)
+    } else {
+        [1.0, 0.0, 0.0]
+    };
+    if m1 == 0.0 {
+        return (
+            distance_gradient * first,
+            barrier_hessian(closest, first, second, clamp),
+        );
+    }
+    // Rare, nearly parallel edges: the products of derivatives of m and b have no simple sign structure.
+    let (sine_gradient, sine_hessian) = squared_sine_derivatives(x);
+    let gradient = distance_gradient * (m * first) + sine_gradient * (m1 * value);
+    let cross = distance_gradient * sine_gradient.transpose() * (m1 * first);
+    let mut hessian = barrier_hessian(closest, first, second, false) * m
+        + cross
+        + cross.transpose()
+        + sine_gradient * sine_gradient.transpose() * (m2 * value)
+        + sine_hessian * (m1 * value);
+    if clamp {
+        project_to_psd(&mut hessian);
+    }
+    (gradient, hessian)
+}
+
+/// The formula in the head of this file.
+fn barrier_hessian(
+    closest: &ClosestPoints,
+    first: f64,
+    second: f64,
+    clamp: bool,
+) -> SMatrix<f64, 12, 12> {
+    let distance = closest.distance_squared.sqrt();
+    let direction = closest.separation / distance;
+    let w = SVector::<f64, 4>::from(closest.weights);
+    let mut normal = 4.0 * second * closest.distance_squared + 2.0 * first;
+    let mut lateral = 2.0 * first;
+    if clamp {
+        normal = normal.max(0.0);
+        lateral = lateral.max(0.0);
+    }
+    // Blocks on the weights: (w wᵀ) ⊗ B with one 3 × 3 matrix B.
+    let mut block = direction * direction.transpose() * normal;
+    if lateral != 0.0 {
+        let mut rest = nalgebra::Matrix3::identity() - direction * direction.transpose();
+        for (tangent, _) in closest.slides() {
+            rest -= tangent * tangent.transpose();
+        }
+        block += rest * lateral;
+    }
+    let mut hessian = kronecker(&(w * w.transpose()), &block);
+    for (tangent, change) in closest.slides() {
+        let v = SVector::<f64, 4>::from(*change);
+        let (a, b) = (w.norm(), v.norm() * distance);
+        if a == 0.0 || b == 0.0 {
+            continue;
+        }
+        // −2 b' [[0, 1], [1, 1]] on (w ⊗ t, v ⊗ r); on unit vectors [[0, ab], [ab, b²]].
+        let k = -2.0 * first;
+        let (cross, square) = if clamp {
+            let root = (b * b + 4.0 * a * a).sqrt();
+            let largest = 0.5 * b * (b + root);
+            // Unit eigenvector (ab, largest) / norm of the 2 × 2 matrix.
+            let norm_squared = a * a * b * b + largest * largest;
+            let lead = k * largest / norm_squared;
+            let ww = lead * b * b;
+            hessian += kronecker(&(w * w.transpose() * ww), &(tangent * tangent.transpose()));
+            (lead * largest, lead * largest * largest / (b * b))
+        } else {
+            (k, k)
+        };
+        let mixed = kronecker(
+            &(w * v.transpose() * (cross * distance)),
+            &(tangent * direction.transpose()),
+        );
+        hessian += mixed + mixed.transpose();
+        let radial = direction * direction.transpose();
+        hessian += kronecker(
+            &(v * v.transpose() * (square * distance * distance)),
+            &radial,
+        );
+    }
+    hessian
+}
+
+fn kronecker(a: &SMatrix<f64, 4, 4>, b: &SMatrix<f64, 3, 3>) -> SMatrix<f64, 12, 12> {
+    SMatrix::from_fn(|i, j| a[(i / 3, j / 3)] * b[(i % 3, j % 3)])
+}
+
+/// Gradient and Hessian of `c = |e_a × e_b|² = |e_a|² |e_b|² − (e_a · e_b)²`.
+fn squared_sine_derivatives(x: &[Vec3; 4]) -> (SVector<f64, 12>, SMatrix<f64, 12, 12>) {
+    let (u, v) = (x[1] - x[0], x[3] - x[2]);
+    let (uu, vv, uv) = (u.norm_squared(), v.norm_squared(), u.dot(&v));
+    let by_edge = [(u * vv - v * uv) * 2.0, (v * uu - u * uv) * 2.0];
+    let identity = nalgebra::Matrix3::identity();
+    let same = [
+        identity * (2.0 * vv) - v * v.transpose() * 2.0,
+        identity * (2.0 * uu) - u * u.transpose() * 2.0,
+    ];
+    let cross = u * v.transpose() * 4.0 - v * u.transpose() * 2.0 - identity * (2.0 * uv);
+    let sign = |i: usize| if (i / 3) % 2 == 0 { -1.0 } else { 1.0 };
+    let gradient = SVector::<f64, 12>::from_fn(|i, _| sign(i) * by_edge[i / 6][i % 3]);
+    let hessian = SMatrix::<f64, 12, 12>::from_fn(|i, j| {
+        let entry = match (i / 6, j / 6) {
+            (0, 1) => cross[(i % 3, j % 3)],
+            (1, 0) => cross[(j % 3, i % 3)],
+            (edge, _) => same[edge][(i % 3, j % 3)],
+        };
+        sign(i) * sign(j) * entry
+    });
+    (gradient, hessian)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(kind: PairKind, points: [[f64; 3]; 4], threshold: f64) {
+        let x = points.map(|p| Vec3::new(p[0], p[1], p[2]));
+        let pair = Pair {
+            kind,
+            vertices: [0, 1, 2, 3],
+        };
+        let barrier = LogBarrier::new(0.1, 0.9);
+        let value =
+            |x: &[Vec3; 4]| mollify(x, threshold) * barrier.value(pair.closest(x).distance_squared);
+        let at = |x: &[Vec3; 4], p| derivatives(&pair.closest(x), &barrier, x, threshold, p);
+        let (gradient, hessian) = at(&x, PsdProjection::Exact);
+        assert!(gradient.norm() > 1e-3, "the pair is active");
+        let h = 1e-6;
+        for i in 0..12 {
+            let moved = |step: f64| {
+                let mut y = x;
+                y[i / 3][i % 3] += step;
+                y
+            };
+            let difference = (value(&moved(h)) - value(&moved(-h))) / (2.0 * h);
+            assert!((gradient[i] - difference).abs() < 1e-7 * gradient.norm().max(1.0));
+            let column = (at(&moved(h), PsdProjection::Exact).0
+                - at(&moved(-h), PsdProjection::Exact).0)
+                / (2.0 * h);
+            assert!(
+                (hessian.column(i) - column).norm() < 1e-6 * hessian.norm(),
+                "column {i}"
+            );
+        }
+        let (same, projected) = at(&x, PsdProjection::Clamp);
+        assert_eq!(same, gradient);
+        let eigenvalues = nalgebra::DMatrix::from_column_slice(12, 12, projected.as_slice())
+            .symmetric_eigenvalues();
+        assert!(eigenvalues.min() > -1e-12 * projected.norm());
+        let scaled = projected * gradient;
+        assert!(scaled.norm() > 0.0);
+    }
+
+    const FACE: [[f64; 3]; 3] = [[0.0, 0.0, 0.1], [1.1, 0.2, 0.0], [0.3, 0.9, -0.2]];
+
+    #[test]
+    fn vertex_face_barriers_have_the_right_derivatives_in_every_region() {
+        for p in [
+            [0.4, 0.35, 0.5],
+            [0.5, -0.3, 0.3],
+            [-0.4, -0.3, 0.3],
+            [1.5, 0.1, 0.3],
+        ] {
+            check(PairKind::VertexFace, [p, FACE[0], FACE[1], FACE[2]], 0.0);
+        }
+    }
+
+    #[test]
+    fn edge_edge_barriers_have_the_right_derivatives_in_every_region() {
+        let a = [[0.0, 0.0, 0.0], [1.0, 0.1, 0.0]];
+        for b in [
+            [[0.4, -0.5, 0.3], [0.6, 0.8, 0.4]],
+            [[0.4, 0.3, 0.3], [0.6, 1.8, 0.4]],
+            [[1.3, 0.2, 0.3], [2.6, 0.8, 0.4]],
+        ] {
+            check(PairKind::EdgeEdge, [a[0], a[1], b[0], b[1]], 0.0);
+        }
+    }
+
+    #[test]
+    fn mollified_edges_have_the_right_derivatives() {
+        let x = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.1, -0.02, 0.3],
+            [0.9, 0.03, 0.35],
+        ];
+        check(PairKind::EdgeEdge, x, 0.05);
+    }
+}
