@@ -322,10 +322,7 @@ impl Builder<'_> {
 
 fn mesh_error(error: ShapeError, path: &str) -> SceneError {
     let help = match &error {
-        ShapeError::File { .. } => Some("file names are relative to the scene's folder"),
-        ShapeError::Mesh(crate::mesh::MeshError::InconsistentOrientation { .. }) => {
-            Some("repair_orientation = true in this mesh reverses such triangles")
-        }
+        ShapeError::File(error) => error.help.clone(),
         _ => None,
     };
     let error = SceneError::new(Kind::Mesh, error.to_string()).inside(path);

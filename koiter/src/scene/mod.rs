@@ -34,7 +34,7 @@ pub use self::{
     document::Document,
     error::{Location, SceneError, SceneErrorKind, Source, Warning},
     nearest::nearest,
-    placement::{MeshData, MeshSource, NoFiles},
+    placement::{MeshSource, NoFiles, UnreadableMesh},
     probe::{Observable, Probe, ProbeTarget},
     selection::{SelectionError, select},
     spec::{SceneFile, SceneSpec},

@@ -7,22 +7,23 @@ use crate::Vec3;
 use crate::mesh::generate::{self, GeneratorError, GridDiagonals};
 use crate::mesh::{MeshError, OrientationPolicy, Surface, SurfaceOptions, UnreferencedPolicy};
 
-/// Triangles as a file has them, unchecked.
-#[derive(Clone, Debug, Default)]
-pub struct MeshData {
-    /// Positions in the file's unit.
-    pub positions: Vec<Vec3>,
-    /// Corners of the faces.
-    pub faces: Vec<[u32; 3]>,
-}
-
 /// Where mesh files come from; the library's scenes read no files themselves.
 pub trait MeshSource {
-    /// The mesh of the file named in a scene.
+    /// The mesh of the file named in a scene, checked but not scaled.
     ///
     /// # Errors
     /// Whatever the reader says; it is told with the place of the name.
-    fn read(&self, file: &str) -> Result<MeshData, Box<dyn std::error::Error + Send + Sync>>;
+    fn read(&self, file: &str, options: SurfaceOptions) -> Result<Surface, UnreadableMesh>;
+}
+
+/// Why a mesh file cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct UnreadableMesh {
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub help: Option<String>,
 }
 
 /// For scenes without mesh files.
@@ -30,8 +31,12 @@ pub trait MeshSource {
 pub struct NoFiles;
 
 impl MeshSource for NoFiles {
-    fn read(&self, _: &str) -> Result<MeshData, Box<dyn std::error::Error + Send + Sync>> {
-        Err("this scene may not read files".into())
+    fn read(&self, _: &str, _: SurfaceOptions) -> Result<Surface, UnreadableMesh> {
+        let message = "this scene may not read files".to_owned();
+        Err(UnreadableMesh {
+            message,
+            help: None,
+        })
     }
 }
 
@@ -39,11 +44,8 @@ impl MeshSource for NoFiles {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub(super) enum ShapeError {
-    #[error("cannot read the mesh \"{file}\": {reason}")]
-    File {
-        file: String,
-        reason: Box<dyn std::error::Error + Send + Sync>,
-    },
+    #[error(transparent)]
+    File(#[from] UnreadableMesh),
     #[error(transparent)]
     Generator(#[from] GeneratorError),
     #[error(transparent)]
@@ -94,19 +96,18 @@ pub(super) fn turn(rotate: &RotationSpec) -> Rotation3<f64> {
 
 fn make(spec: &MeshSpec, source: &dyn MeshSource) -> Result<Surface, ShapeError> {
     if let Some(file) = &spec.file {
-        let data = source.read(file).map_err(|reason| ShapeError::File {
-            file: file.clone(),
-            reason,
-        })?;
         let orientation = match spec.repair_orientation {
             true => OrientationPolicy::Repair,
             false => OrientationPolicy::Refuse,
         };
-        let options = SurfaceOptions {
-            orientation,
-            unreferenced: UnreferencedPolicy::Drop,
-        };
-        return Ok(Surface::new(data.positions, data.faces, options)?);
+        let unreferenced = UnreferencedPolicy::Drop;
+        return Ok(source.read(
+            file,
+            SurfaceOptions {
+                orientation,
+                unreferenced,
+            },
+        )?);
     }
     Ok(generate(spec)?)
 }
@@ -154,12 +155,10 @@ mod tests {
     struct OneTriangle;
 
     impl MeshSource for OneTriangle {
-        fn read(&self, _: &str) -> Result<MeshData, Box<dyn std::error::Error + Send + Sync>> {
+        fn read(&self, _: &str, options: SurfaceOptions) -> Result<Surface, UnreadableMesh> {
             let positions = [[0.0, 0.0, 0.0], [0.0, 0.0, 10.0], [0.0, 20.0, 0.0]];
-            Ok(MeshData {
-                positions: positions.map(Vec3::from).to_vec(),
-                faces: vec![[0, 1, 2]],
-            })
+            let positions = positions.map(Vec3::from).to_vec();
+            Ok(Surface::new(positions, vec![[0, 1, 2]], options).unwrap())
         }
     }
 

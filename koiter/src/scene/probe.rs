@@ -31,7 +31,7 @@ pub enum ProbeTarget {
     },
     /// An energy by name, or the sum [J].
     Energy(Option<String>),
-    /// Total force on the vertices of a constraint [N], by its index.
+    /// Total force of a constraint on its vertices [N], by its index.
     Reaction(usize),
 }
 
@@ -43,8 +43,8 @@ pub trait Observable {
     fn velocities(&self, shell: usize) -> Vec<Vec3>;
     /// Energies by name [J].
     fn energies(&self) -> Vec<(&'static str, f64)>;
-    /// Forces on the vertices of a constraint [N].
-    fn reactions(&self, constraint: usize) -> Vec<Vec3>;
+    /// Total force that a constraint exerts on its vertices [N].
+    fn reaction(&self, constraint: usize) -> Vec3;
 }
 
 impl Probe {
@@ -68,9 +68,7 @@ impl Probe {
                 start,
             } => self.measure_vertices(*quantity, state, *shell, vertices, start),
             ProbeTarget::Energy(name) => vec![total_energy(&state.energies(), name.as_deref())],
-            ProbeTarget::Reaction(constraint) => {
-                self.components(state.reactions(*constraint).into_iter().sum())
-            }
+            ProbeTarget::Reaction(constraint) => self.components(state.reaction(*constraint)),
         }
     }
 
@@ -146,8 +144,8 @@ mod tests {
         fn energies(&self) -> Vec<(&'static str, f64)> {
             vec![("membrane", 1.0), ("bending", 0.5)]
         }
-        fn reactions(&self, _: usize) -> Vec<Vec3> {
-            vec![Vec3::x(), Vec3::x()]
+        fn reaction(&self, _: usize) -> Vec3 {
+            2.0 * Vec3::x()
         }
     }
 

@@ -1,5 +1,6 @@
 use super::*;
-use crate::scene::placement::{MeshData, NoFiles};
+use crate::mesh::SurfaceOptions;
+use crate::scene::placement::{NoFiles, UnreadableMesh};
 use crate::scene::schedule::Schedule;
 
 const SCENE: &str = r#"
@@ -37,21 +38,25 @@ constraint = "edge"
 struct Files;
 
 impl MeshSource for Files {
-    fn read(&self, file: &str) -> Result<MeshData, Box<dyn std::error::Error + Send + Sync>> {
+    fn read(&self, file: &str, options: SurfaceOptions) -> Result<Surface, UnreadableMesh> {
         let positions = [
             [0.0, 0.0, 0.0],
             [1.0, 0.0, 0.0],
             [0.0, 1.0, 0.0],
             [1.0, 1.0, 0.0],
         ];
+        let unreadable = |message: String| UnreadableMesh {
+            message,
+            help: Some("look again".into()),
+        };
         let faces = match file {
             "crossed.obj" => vec![[0, 1, 2], [1, 2, 3]],
             "large.obj" => vec![[0, 1, 2], [1, 3, 2]],
-            _ => return Err(format!("{file}: no such file").into()),
+            _ => return Err(unreadable(format!("{file}: no such file"))),
         };
         let scale = if file == "large.obj" { 500.0 } else { 1.0 };
         let positions = positions.map(|x| Vec3::from(x) * scale).to_vec();
-        Ok(MeshData { positions, faces })
+        Surface::new(positions, faces, options).map_err(|error| unreadable(error.to_string()))
     }
 }
 
@@ -118,7 +123,7 @@ fn mistakes_that_only_meshes_show_point_at_their_line() {
             "mesh.file = \"crossed.obj\"",
             "shell.cloth.mesh.file",
             (7, "\"crossed.obj\""),
-            "repair_orientation",
+            "look again",
         ),
         (
             "cells = [4, 4]",
