@@ -328,18 +328,14 @@ mod tests {
             parts: vec![PartView::shell(positions, faces)],
             ground: Ground::None,
         };
-        let options = RenderOptions::new(4, 4, Camera::fit(&Bounds::EMPTY, CameraView::Iso, 1.0));
-        // The box of radius one leaves the coordinates as they are.
+        // A camera for a box of radius one about the origin leaves the coordinates as they are.
         let side = 1.0 / 3f64.sqrt();
-        Surface::gather(
-            &scene,
-            &Bounds {
-                min: [-side; 3],
-                max: [side; 3],
-            },
-            &options,
-            (0.0, 1.0),
-        )
+        let bounds = Bounds {
+            min: [-side; 3],
+            max: [side; 3],
+        };
+        let options = RenderOptions::new(4, 4, Camera::fit(&bounds, CameraView::Iso, 1.0));
+        Surface::gather(&scene, &bounds, &options, (0.0, 1.0))
     }
 
     /// Numbers between −1 and 1 from a linear congruence.

@@ -133,6 +133,9 @@ pub struct Camera {
     pub(crate) forward: [f64; 3],
     /// Tangent of half the vertical field of view.
     pub(crate) tan_half: f64,
+    /// Half the diagonal of the framed box: the length that counts as one for the reach of light, the same in all frames
+    /// of a film.
+    pub(crate) unit: f64,
 }
 
 impl Camera {
@@ -187,6 +190,7 @@ impl Camera {
         );
         let mut planes = [f64::NEG_INFINITY; 4];
         let mut nearest = f64::INFINITY;
+        let mut bounds = Bounds::EMPTY;
         for point in points
             .into_iter()
             .filter(|point| point.iter().all(|x| x.is_finite()))
@@ -195,6 +199,7 @@ impl Camera {
             let reach = [x / tan_x - z, -x / tan_x - z, y / tan_y - z, -y / tan_y - z];
             planes = std::array::from_fn(|i| planes[i].max(reach[i]));
             nearest = nearest.min(z);
+            bounds.include(point);
         }
         if nearest == f64::INFINITY {
             return Self::fit(&Bounds::EMPTY, view, aspect);
@@ -205,7 +210,7 @@ impl Camera {
             0.5 * tan_y * (planes[2] - planes[3]),
         );
         // A single point, or a line along the view, leaves no distance: stand off a unit.
-        let degenerate = distance + nearest < 1e-9 * (1.0 + nearest.abs());
+        let degenerate = distance + nearest <= 1e-9 * nearest.abs();
         let distance = if degenerate { 1.0 - nearest } else { distance };
         let eye =
             std::array::from_fn(|axis| x * right[axis] + y * up[axis] - distance * forward[axis]);
@@ -215,6 +220,11 @@ impl Camera {
             up,
             forward,
             tan_half: tan_half / zoom,
+            unit: if bounds.radius() > 0.0 {
+                bounds.radius()
+            } else {
+                1.0
+            },
         }
     }
 

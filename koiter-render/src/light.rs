@@ -14,21 +14,23 @@ use rayon::prelude::*;
 use crate::bvh::Bvh;
 use crate::hit::Hit;
 use crate::options::{Quality, RenderOptions};
-use crate::raster::{NOTHING, Samples, ScreenTriangle, View, bin};
+use crate::raster::{GROUND, NOTHING, Samples, ScreenTriangle, View, bin};
 use crate::surface::Surface;
 use crate::vector::{Vec3, vec3};
 
-/// How far things darken each other in the light of the sky, in radii of the scene.
+/// How far things darken each other in the light of the sky, in units of the camera.
 const REACH: f32 = 1.2;
-/// Rays start this far above the surface, in radii of the scene: less than the gap of any contact that can be seen.
+/// Rays start this far above the surface, in units of the camera: less than the gap of any contact that can be seen.
 const LIFT: f32 = 2e-4;
 /// Radiance of the sky at the horizon, and what is added towards the zenith: an open floor receives 1.
 const HORIZON: f32 = 0.70;
 const ZENITH: f32 = 0.45;
 /// Radiance from below.
 const BOUNCE: f32 = 0.50;
-/// Height above the ground at which half of that light is left (radii of the scene).
+/// Height above the ground at which half of that light is left (units of the camera).
 const BOUNCE_HEIGHT: f32 = 0.15;
+/// The lamp is farther away than anything.
+const LAMP_REACH: f32 = 1e12;
 /// Rows of texels that one thread handles at a time.
 const BAND: usize = 8;
 /// Where each texel of a tile starts in the common sequence: neighbours far apart.
@@ -119,6 +121,7 @@ impl Pattern {
 struct Tracer<'a> {
     bvh: &'a Bvh,
     ground: Option<f32>,
+    radius: f32,
     lamp: Vec3,
     /// Sine of the angular radius of the lamp.
     softness: f32,
@@ -139,10 +142,13 @@ impl Tracer<'_> {
     }
 
     fn sky(&self, hit: &Hit, origin: Vec3, slot: usize) -> f32 {
-        // The scene lies in the unit sphere: farther away nothing darkens the ground.
-        let is_open = hit.position.length() > 1.0 + REACH;
+        // Far from the scene nothing darkens the ground.
+        let is_open = hit.position.length() > self.radius + REACH;
         let (s, t) = hit.normal.tangents();
-        let mut sum = 0.0;
+        if is_open && hit.group == GROUND {
+            return 1.0;
+        }
+        let (mut sum, mut open) = (0.0, 0.0);
         for [local, reach] in &self.pattern.sky[slot * self.num_sky..(slot + 1) * self.num_sky] {
             let direction = s * local.x + t * local.y + hit.normal * local.z;
             let mut reach = REACH * reach.x;
@@ -155,6 +161,7 @@ impl Tracer<'_> {
             } else {
                 BOUNCE
             };
+            open += radiance;
             let is_blocked = !is_open && self.bvh.is_blocked(origin, direction, reach);
             sum += if is_blocked {
                 radiance * (1.0 - self.occlusion)
@@ -162,7 +169,12 @@ impl Tracer<'_> {
                 radiance
             };
         }
-        sum / self.num_sky as f32
+        // Relative to the open, the ground has no noise where nothing is near.
+        sum / if hit.group == GROUND {
+            open
+        } else {
+            self.num_sky as f32
+        }
     }
 
     fn key(&self, hit: &Hit, origin: Vec3, slot: usize) -> f32 {
@@ -172,14 +184,16 @@ impl Tracer<'_> {
         }
         let along = hit.position.dot(self.lamp);
         let miss = (hit.position - self.lamp * along).length();
-        if along > 1.0 || miss > 1.0 + self.softness * (1.0 - along).max(0.0) {
+        if along > self.radius
+            || miss > self.radius + self.softness * (self.radius - along).max(0.0)
+        {
             return 1.0;
         }
         let (s, t) = self.lamp.tangents();
         let offsets = &self.pattern.key[slot * self.num_key..(slot + 1) * self.num_key];
         let is_blocked = |&&[x, y]: &&[f32; 2]| {
             let direction = (self.lamp + (s * x + t * y) * self.softness).normalized_or(self.lamp);
-            self.bvh.is_blocked(origin, direction, 10.0)
+            self.bvh.is_blocked(origin, direction, LAMP_REACH)
         };
         1.0 - self.shadow * offsets.iter().filter(is_blocked).count() as f32 / self.num_key as f32
     }
@@ -208,6 +222,7 @@ impl LightMap {
         let tracer = Tracer {
             bvh,
             ground: surface.ground,
+            radius: surface.radius,
             lamp: lamp_direction(view, options),
             softness: (options.light.softness as f32).to_radians().sin(),
             shadow: options.shadow as f32,

@@ -14,7 +14,7 @@ const STRENGTH: f32 = 0.7;
 const CANDIDATES: usize = 16;
 const BAYER: [[usize; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
-/// Counts of the colours of all frames, in boxes of 8 levels.
+/// Counts of the colours of all frames, in boxes of 4 levels.
 pub(crate) struct Histogram {
     bins: Vec<(u64, [u64; 3])>,
 }
@@ -22,7 +22,7 @@ pub(crate) struct Histogram {
 impl Histogram {
     pub(crate) fn new() -> Self {
         Self {
-            bins: vec![(0, [0; 3]); 1 << 15],
+            bins: vec![(0, [0; 3]); 1 << 18],
         }
     }
 
@@ -30,7 +30,7 @@ impl Histogram {
         for pixel in bytes.chunks_exact(3) {
             let index = pixel
                 .iter()
-                .fold(0, |index, &c| index << 5 | usize::from(c >> 3));
+                .fold(0, |index, &c| index << 6 | usize::from(c >> 2));
             let (count, sum) = &mut self.bins[index];
             *count += 1;
             (0..3).for_each(|k| sum[k] += u64::from(pixel[k]));
@@ -49,7 +49,7 @@ impl Histogram {
     }
 }
 
-/// The colours, and the nearest for every colour in steps of 4 levels.
+/// The colours, and the nearest for every colour in steps of 2 levels.
 pub(crate) struct Palette {
     colors: Vec<Vec3>,
     nearest: Vec<u8>,
@@ -98,10 +98,10 @@ impl Palette {
         colors
             .iter_mut()
             .for_each(|c| *c = vec3(round(c.x), round(c.y), round(c.z)));
-        let center = |index: usize, shift: usize| (4 * (index >> shift & 63) + 2) as f32;
-        let nearest = (0..1usize << 18)
+        let center = |index: usize, shift: usize| (2 * (index >> shift & 127) + 1) as f32;
+        let nearest = (0..1usize << 21)
             .into_par_iter()
-            .map(|i| nearest(&colors, vec3(center(i, 12), center(i, 6), center(i, 0))) as u8)
+            .map(|i| nearest(&colors, vec3(center(i, 14), center(i, 7), center(i, 0))) as u8)
             .collect();
         Self { colors, nearest }
     }
@@ -164,8 +164,8 @@ impl Palette {
     }
 
     fn look_up(&self, color: Vec3) -> u8 {
-        let step = |c: f32| c.clamp(0.0, 255.0) as usize >> 2;
-        self.nearest[step(color.x) << 12 | step(color.y) << 6 | step(color.z)]
+        let step = |c: f32| c.clamp(0.0, 255.0) as usize >> 1;
+        self.nearest[step(color.x) << 14 | step(color.y) << 7 | step(color.z)]
     }
 }
 

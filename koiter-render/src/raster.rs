@@ -13,7 +13,7 @@ pub(crate) const NOTHING: u32 = u32::MAX;
 /// Sample that sees the ground.
 pub(crate) const GROUND: u32 = u32::MAX - 1;
 
-/// Nothing nearer to the eye is drawn, in units of the scene's radius.
+/// Nothing nearer to the eye is drawn, in units of the camera.
 const NEAR: f32 = 1e-3;
 /// The ground is drawn this much farther away, relatively, so that what lies on it is seen.
 const GROUND_BIAS: f32 = 1e-4;
@@ -130,7 +130,7 @@ impl View {
     /// an affine function, given as value at the origin and slopes in x and y.
     fn plane_inverse_depth(&self, height: f32) -> Option<[f32; 3]> {
         let above = self.eye.z - height;
-        // Seen from below, the ground would hide the scene.
+        // Rounding may put the eye on the ground after all.
         if above <= 0.0 {
             return None;
         }

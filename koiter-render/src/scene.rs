@@ -46,7 +46,7 @@ pub enum FieldView<'a> {
     PerFace(&'a [f64]),
 }
 
-/// The floor: it shows only through the shadows on it, and fades into the background.
+/// The floor: it shows only through the shadows on it, and fades into the background. Seen from below, it is left out.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Ground {
     /// No floor.

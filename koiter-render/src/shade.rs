@@ -22,7 +22,9 @@ use crate::vector::{Vec3, smoothstep, vec3};
 /// Strength of the lamp, the sky and a faint light at the eye; a surface that faces the lamp keeps about its colour.
 const KEY: f32 = 0.74;
 const SKY: f32 = 0.50;
-const EYE: f32 = 0.07;
+const EYE: f32 = 0.08;
+/// Share of the sky's light that reaches even the deepest fold, by way of surfaces that are not traced.
+const LEAST_SKY: f32 = 0.05;
 /// The lamp is a little warm, the sky a little cool; not for fields, whose colours are read off a legend.
 const KEY_TINT: Vec3 = vec3(1.03, 1.0, 0.95);
 const SKY_TINT: Vec3 = vec3(0.96, 1.0, 1.06);
@@ -146,7 +148,7 @@ impl<'a> Shader<'a> {
         let to_eye = (self.view.eye - hit.position).normalized_or(hit.normal);
         let facing = hit.normal.dot(to_eye).clamp(0.0, 1.0);
         let lamp = KEY * received.key * hit.normal.dot(self.lamp).max(0.0);
-        let sky = bounced(received.sky, albedo) * SKY;
+        let sky = bounced(LEAST_SKY + (1.0 - LEAST_SKY) * received.sky, albedo) * SKY;
         let (key_tint, sky_tint) = if is_field {
             (vec3(1.0, 1.0, 1.0), vec3(1.0, 1.0, 1.0))
         } else {

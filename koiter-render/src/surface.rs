@@ -12,7 +12,8 @@ use crate::vector::{Vec3, vec3};
 const OBSTACLE_CREASE: f32 = 0.766;
 const SHELL_CREASE: f32 = 0.407;
 
-/// Everything that is drawn, in a frame where the scene's bounding sphere has radius one about the origin.
+/// Everything that is drawn, in a frame where the centre of the scene is the origin and the radius of what the camera was
+/// fitted to is one.
 pub(crate) struct Surface {
     pub(crate) positions: Vec<Vec3>,
     pub(crate) faces: Vec<[u32; 3]>,
@@ -21,8 +22,10 @@ pub(crate) struct Surface {
     pub(crate) parts: Vec<Part>,
     /// For each face its part.
     pub(crate) part_of_face: Vec<u32>,
-    /// Height of the ground in the unit frame.
+    /// Height of the ground in the unit frame, `None` as well when the camera is below it.
     pub(crate) ground: Option<f32>,
+    /// All vertices are in the sphere of this radius about the origin.
+    pub(crate) radius: f32,
     center: [f64; 3],
     scale: f64,
 }
@@ -53,8 +56,7 @@ impl Surface {
         range: (f64, f64),
     ) -> Self {
         let center = bounds.center();
-        let radius = bounds.radius();
-        let scale = if radius > 0.0 { 1.0 / radius } else { 1.0 };
+        let scale = 1.0 / options.camera.unit;
         let mut surface = Self {
             positions: Vec::new(),
             faces: Vec::new(),
@@ -62,9 +64,13 @@ impl Surface {
             parts: Vec::new(),
             part_of_face: Vec::new(),
             ground: match scene.ground {
-                Ground::None => None,
-                Ground::At(height) => Some(((height - center[2]) * scale) as f32),
+                // Seen from below, the ground would hide the scene.
+                Ground::At(height) if options.camera.eye[2] > height => {
+                    Some(((height - center[2]) * scale) as f32)
+                }
+                _ => None,
             },
+            radius: (bounds.radius() * scale) as f32,
             center,
             scale,
         };

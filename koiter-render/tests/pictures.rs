@@ -254,7 +254,8 @@ fn odd_scenes_are_drawn_without_panic() {
     let point = [[1.0; 3]; 4];
     let huge = SQUARE.map(|p| p.map(|x| 1e12 * x));
     let tiny = SQUARE.map(|p| p.map(|x| 1e-12 * x));
-    for positions in [point, huge, tiny] {
+    let enormous = SQUARE.map(|p| p.map(|x| f64::MAX * x));
+    for positions in [point, huge, tiny, enormous] {
         for view in [
             CameraView::Front,
             CameraView::Side,
@@ -294,4 +295,37 @@ fn the_default_view_shows_the_scene_in_the_middle() {
     );
     let [r, g, _] = image.unwrap().pixel(48, 48).unwrap();
     assert!(r > g);
+}
+
+#[test]
+fn what_leaves_the_picture_does_not_change_the_light_in_it() {
+    let (positions, faces) = waves(40);
+    let options = options(&positions, CameraView::Front);
+    let sheet = PartView::shell(&positions, &faces);
+    let away = SQUARE.map(|[x, y, z]| [x - 40.0, y + 30.0, z + 5.0]);
+    let parts = vec![sheet, PartView::shell(&away, &FACES)];
+    let alone = render(
+        &Scene {
+            parts: vec![sheet],
+            ground: Ground::At(-0.2),
+        },
+        &options,
+    )
+    .unwrap();
+    let both = render(
+        &Scene {
+            parts,
+            ground: Ground::At(-0.2),
+        },
+        &options,
+    )
+    .unwrap();
+    let differences = alone
+        .bytes()
+        .iter()
+        .zip(both.bytes())
+        .map(|(a, b)| a.abs_diff(*b));
+    // The centre moved by 20 units: coordinates are rounded to 2e-6, and a ray in hundreds falls on the other side.
+    let sum: u32 = differences.map(u32::from).sum();
+    assert!(sum < alone.bytes().len() as u32 / 20, "{sum}");
 }
