@@ -1,5 +1,30 @@
 //! From one state to the next.
 
+mod implicit_euler;
+mod offset_surface;
+mod quasi_static;
 mod report;
+mod rest_directors;
+mod system;
 
+pub use implicit_euler::ImplicitEuler;
+pub use offset_surface::OffsetSurfaces;
+pub use quasi_static::QuasiStatic;
 pub use report::{StepError, StepReport};
+pub use rest_directors::relax_directors;
+pub use system::{Prescribed, ShellPart, State, System};
+
+/// Advances a state.
+pub trait Integrator: Send {
+    /// One step of size `dt` [s] towards the prescribed values at its end.
+    ///
+    /// # Errors
+    /// See [`StepError`]; then `state` is as it was. Not converging is told in the report.
+    fn step(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        prescribed: &Prescribed,
+        dt: f64,
+    ) -> Result<StepReport, StepError>;
+}

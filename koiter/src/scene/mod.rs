@@ -4,8 +4,11 @@
 //! [`MeshSource`], resolves selections and gives a checked [`model::Model`]. A mistake is a [`SceneError`] with a
 //! message, a dotted path, a place in the text and a help.
 
+mod assemble;
+mod display;
 pub mod model;
 pub mod schedule;
+mod simulation;
 
 #[cfg(feature = "serde")]
 mod build;
@@ -28,6 +31,11 @@ pub mod spec;
 #[cfg(feature = "serde")]
 mod warnings;
 
+pub use self::{
+    assemble::BuildError,
+    display::PartTopology,
+    simulation::{Simulation, SystemStats},
+};
 #[cfg(feature = "serde")]
 pub use self::{
     build::Scene,

@@ -71,6 +71,48 @@ pub fn bending_stencils(mesh: &TriMesh, first_vertex: Dof, first_edge: Dof) -> V
         .collect()
 }
 
+/// How directors follow from tilts, as data: for measuring and for display.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DirectorShape {
+    /// No directors: the bisector of the normals.
+    #[default]
+    Bisector,
+    /// `d = cos ζ n + sin ζ t` (DCS, DSO).
+    Unit,
+    /// `d = n + tan ζ t` (BAC).
+    Tangent,
+}
+
+/// Tilt and own wing of edge `c` of a face.
+fn tilt_and_wing(stencil: &BendingStencil, c: usize, has_angle: bool, q: &[f64]) -> (f64, Wing) {
+    let point = |dof: Dof| Vec3::from_column_slice(&q[dof.0 as usize..dof.0 as usize + 3]);
+    let (a, b) = (point(stencil.corners[(c + 1) % 3]), point(stencil.corners[(c + 2) % 3]));
+    let wing = Wing::new(&a, &b, &point(stencil.corners[c]));
+    let theta = stencil.across[c].map_or(0.0, |d| hinge_angle(&wing, &Wing::new(&b, &a, &point(d))));
+    let angle = if has_angle { q[stencil.angles[c].0 as usize] } else { 0.0 };
+    (0.5 * theta + stencil.signs[c] * angle, wing)
+}
+
+/// The directors of the three edges of a face, as seen from it ("Better Bending", Eqs. 65, 66).
+pub fn directors(stencil: &BendingStencil, shape: DirectorShape, q: &[f64]) -> [Vec3; 3] {
+    std::array::from_fn(|c| {
+        let (tilt, wing) = tilt_and_wing(stencil, c, shape != DirectorShape::Bisector, q);
+        // The outward in-plane normal of the edge is opposite to the altitude.
+        match shape {
+            DirectorShape::Tangent => wing.normal - wing.altitude * tilt.tan(),
+            _ => wing.normal * tilt.cos() - wing.altitude * tilt.sin(),
+        }
+    })
+}
+
+/// The entries q_c of the second fundamental form of a face [m].
+pub fn curvatures(stencil: &BendingStencil, shape: DirectorShape, q: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|c| {
+        let (tilt, wing) = tilt_and_wing(stencil, c, shape != DirectorShape::Bisector, q);
+        2.0 * wing.height * if shape == DirectorShape::Tangent { tilt.tan() } else { tilt.sin() }
+    })
+}
+
 /// One edge of a face with what its curvature needs.
 struct Corner {
     wing: Wing,

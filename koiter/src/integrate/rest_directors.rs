@@ -1,0 +1,51 @@
+//! The directors of a given surface: those that minimise its bending energy.
+
+use crate::assembly::{ConfigurationSpace, Dof, DofLayout, Energy};
+use crate::rest::RestError;
+use crate::solve::{LinearWorkspace, NewtonOptions, Problem, minimize};
+
+/// Directors move by angles; the step is the largest of them [rad].
+struct Angles;
+
+impl ConfigurationSpace for Angles {
+    fn displacement(&self, _q: &[f64], dq: &[f64]) -> f64 {
+        dq.iter().fold(0.0, |m, d| if d.abs() <= m { m } else { d.abs() })
+    }
+    fn describe(&self, dof: usize) -> String {
+        format!("director {dof}")
+    }
+}
+
+/// Angles are found to this accuracy [rad]: the energy's error is its square.
+const TOLERANCE: f64 = 1e-10;
+
+/// Moves the `count` edge angles from `first` on to a minimum of `bending`; everything else in `q` stays.
+///
+/// # Errors
+/// [`RestError::Directors`] if Newton's method does not converge.
+pub fn relax_directors(
+    bending: &mut dyn Energy,
+    layout: &DofLayout,
+    (first, count): (Dof, usize),
+    q: &mut [f64],
+) -> Result<(), RestError> {
+    let mut is_fixed = vec![true; layout.num_solved_dofs()];
+    is_fixed[first.0 as usize..first.0 as usize + count].fill(false);
+    let target = q.to_vec();
+    let mut problem = Problem {
+        energies: vec![bending],
+        layout,
+        space: &Angles,
+        is_fixed: &is_fixed,
+        target: &target,
+    };
+    let options = NewtonOptions { tolerance: TOLERANCE, max_iterations: 100 };
+    let report = minimize(&mut problem, &options, &mut LinearWorkspace::default(), q)
+        .map_err(|error| RestError::Directors { reason: error.to_string() })?;
+    if report.converged {
+        Ok(())
+    } else {
+        let reason = format!("the last step was {:.1e} rad after {} iterations", report.last_step, report.iterations);
+        Err(RestError::Directors { reason })
+    }
+}

@@ -1,0 +1,262 @@
+//! Everything a step needs: unknowns, energies, masses, contact, and the workspace of the solver.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::offset_surface::OffsetSurfaces;
+use super::report::{StepError, StepReport};
+use crate::Vec3;
+use crate::assembly::{Dof, DofLayout, Energy};
+use crate::contact::{Contact, Friction};
+use crate::energy::bending::{BendingStencil, DirectorShape, curvatures, directors};
+use crate::energy::{Gravity, Inertia};
+use crate::mesh::TriMesh;
+use crate::rest::RestFrame;
+use crate::solve::{LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError, minimize};
+
+/// Positions, edge angles and velocities at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// All unknowns, and the positions of obstacles after them.
+    pub q: Vec<f64>,
+    /// Their rates.
+    pub velocities: Vec<f64>,
+    /// Time [s].
+    pub time: f64,
+    /// Steps taken.
+    pub step: usize,
+}
+
+/// What is prescribed at the end of a step.
+#[derive(Clone, Debug)]
+pub struct Prescribed {
+    /// Which of the solved unknowns are held.
+    pub is_fixed: Vec<bool>,
+    /// Their values, and those of everything that is not solved for; other entries are ignored.
+    pub target: Vec<f64>,
+}
+
+/// A shell's place among the unknowns, and what its kinematics needs.
+#[derive(Clone, Debug)]
+pub struct ShellPart {
+    /// Name in the scene.
+    pub name: String,
+    /// Topology.
+    pub mesh: TriMesh,
+    /// First unknown of vertex 0.
+    pub first_vertex: Dof,
+    /// First unknown of edge 0, for models with directors.
+    pub first_edge: Option<Dof>,
+    /// Rest frames of the faces.
+    pub frames: Vec<RestFrame>,
+    /// Thickness [m].
+    pub thickness: f64,
+    /// Rest second fundamental forms in these frames, components `11, 22, 12` [1/m].
+    pub rest_forms: Vec<Vector3<f64>>,
+    /// How directors depend on tilts.
+    pub director_shape: DirectorShape,
+    /// The unknowns of each face and its neighbours.
+    pub stencils: Vec<BendingStencil>,
+}
+
+impl ShellPart {
+    /// The unknowns of all vertices.
+    pub fn vertex_dofs(&self) -> Range<usize> {
+        let start = self.first_vertex.0 as usize;
+        start..start + 3 * self.mesh.num_vertices()
+    }
+
+    /// Position of a vertex.
+    pub fn position(&self, vertex: usize, q: &[f64]) -> Vec3 {
+        let start = self.first_vertex.0 as usize + 3 * vertex;
+        Vec3::new(q[start], q[start + 1], q[start + 2])
+    }
+
+    /// Corners of a face.
+    pub fn face_corners(&self, face: usize, q: &[f64]) -> [Vec3; 3] {
+        self.mesh.faces()[face].map(|v| self.position(v as usize, q))
+    }
+
+    /// Directors of the edges of a face, as seen from it.
+    pub fn directors(&self, face: usize, q: &[f64]) -> [Vec3; 3] {
+        directors(&self.stencils[face], self.director_shape, q)
+    }
+
+    /// Largest principal Green strain of a face.
+    pub fn largest_strain(&self, face: usize, q: &[f64]) -> f64 {
+        let x = self.face_corners(face, q);
+        let [f1, f2] = self.frames[face].deformation_gradient(&(x[1] - x[0]), &(x[2] - x[0]));
+        let (a, b, c) = (f1.norm_squared(), f2.norm_squared(), f1.dot(&f2));
+        0.5 * (0.5 * (a + b) + (0.25 * (a - b) * (a - b) + c * c).sqrt() - 1.0)
+    }
+
+    /// Second fundamental form of a face in its rest frame, components `11, 22, 12` [1/m].
+    pub fn second_form(&self, face: usize, q: &[f64]) -> Vector3<f64> {
+        let curvature = Vector3::from(curvatures(&self.stencils[face], self.director_shape, q));
+        Vector3::from(self.frames[face].second_form_matrix().map(|row| Vector3::from(row).dot(&curvature)))
+    }
+
+    /// Mean curvature of a face [1/m]: half the trace of the second fundamental form in the rest metric.
+    pub fn mean_curvature(&self, face: usize, q: &[f64]) -> f64 {
+        let form = self.second_form(face, q);
+        0.5 * (form.x + form.y)
+    }
+}
+
+/// The parts of a simulation that do not change with its state.
+pub struct System {
+    /// Grouping of the unknowns.
+    pub layout: DofLayout,
+    /// Membrane and bending of every shell.
+    pub elastic: Vec<Box<dyn Energy>>,
+    /// Gravity.
+    pub gravity: Gravity,
+    /// Lumped masses [kg] and rotational inertias [kg·m²] of the solved unknowns.
+    pub masses: Vec<f64>,
+    /// Contact, unless it is off.
+    pub contact: Option<Contact>,
+    /// Speed below which friction is smoothed [m/s].
+    pub friction_speed: f64,
+    /// Measures steps.
+    pub space: OffsetSurfaces,
+    /// Pattern, matrix and factor.
+    pub workspace: LinearWorkspace,
+    /// Iteration limit of Newton's method.
+    pub max_iterations: usize,
+}
+
+impl System {
+    /// Minimises the sum of energies from `q`, with friction against the motion since `start`, and fills the report's
+    /// common part.
+    pub(super) fn solve(
+        &mut self,
+        q: &mut [f64],
+        inertia: Option<&mut Inertia>,
+        sliding: (&[f64], f64),
+        prescribed: &Prescribed,
+        tolerance: f64,
+    ) -> Result<NewtonReport, SolveError> {
+        let (start, sliding_dt) = sliding;
+        let mut friction = Friction {
+            contacts: Vec::new(),
+            start: start.to_vec(),
+            smoothing: self.friction_speed * sliding_dt,
+            layout: self.layout.clone(),
+        };
+        if let Some(contact) = &mut self.contact {
+            contact.prepare(q);
+            contact.refresh(q);
+            contact.lag(&mut friction);
+        }
+        let mut energies: Vec<&mut dyn Energy> = Vec::new();
+        for energy in &mut self.elastic {
+            energies.push(energy.as_mut());
+        }
+        energies.push(&mut self.gravity);
+        if let Some(inertia) = inertia {
+            energies.push(inertia);
+        }
+        if let Some(contact) = &mut self.contact {
+            energies.push(contact);
+            energies.push(&mut friction);
+        }
+        let mut problem = Problem {
+            energies,
+            layout: &self.layout,
+            space: &self.space,
+            is_fixed: &prescribed.is_fixed,
+            target: &prescribed.target,
+        };
+        let options = NewtonOptions { tolerance, max_iterations: self.max_iterations };
+        minimize(&mut problem, &options, &mut self.workspace, q)
+    }
+
+    /// Energies by name at a state, with the kinetic energy.
+    pub fn energies(&self, state: &State) -> Vec<(&'static str, f64)> {
+        let mut energies: Vec<(&'static str, f64)> = Vec::new();
+        let mut add = |name: &'static str, value: f64| match energies.iter_mut().find(|(n, _)| *n == name) {
+            Some((_, total)) => *total += value,
+            None => energies.push((name, value)),
+        };
+        for energy in &self.elastic {
+            add(energy.name(), energy.value(&state.q));
+        }
+        add("gravity", self.gravity.value(&state.q));
+        let kinetic = self.masses.iter().zip(&state.velocities).map(|(m, v)| 0.5 * m * v * v).sum();
+        add("kinetic", kinetic);
+        if let Some(contact) = &self.contact {
+            add("contact", contact.value(&state.q));
+        }
+        energies
+    }
+
+    /// Checks the new state, adopts it, and completes the report.
+    pub(super) fn finish(
+        &mut self,
+        state: &mut State,
+        next: State,
+        newton: NewtonReport,
+        mut report: StepReport,
+    ) -> Result<StepReport, StepError> {
+        let clock = std::time::Instant::now();
+        let mut seconds = newton.seconds.clone();
+        if let Some(contact) = &mut self.contact {
+            let touching = contact.touching(&next.q);
+            if !touching.is_empty() {
+                let worst: Vec<&str> = touching.iter().take(3).map(|t| t.description.as_str()).collect();
+                return Err(StepError::Intersection { step: next.step, details: worst.join("; ") });
+            }
+            contact.refresh(&next.q);
+            let statistics = contact.statistics();
+            (report.contacts, report.min_gap, report.kappa) =
+                (statistics.contacts, statistics.min_gap, statistics.kappa);
+        } else {
+            report.min_gap = f64::INFINITY;
+        }
+        seconds.push(("audit", clock.elapsed().as_secs_f64()));
+        report.step = next.step;
+        report.time = next.time;
+        report.newton_iterations = newton.iterations;
+        report.line_search_steps = newton.line_search_steps;
+        report.converged = newton.converged;
+        report.seconds = seconds;
+        report.energies = self.energies(&next);
+        if !newton.converged {
+            report.diagnosis = Some(self.diagnose(&newton, &next.q));
+        }
+        *state = next;
+        Ok(report)
+    }
+
+    fn diagnose(&self, newton: &NewtonReport, q: &[f64]) -> String {
+        let mut text = format!(
+            "Newton's method stopped after {} iterations with a last step of {:.2e} m",
+            newton.iterations, newton.last_step
+        );
+        if newton.remaining > 0.0 {
+            text += &format!("; prescribed motions are short of their targets by {:.2e} m", newton.remaining);
+        }
+        if let Some(limiter) = &newton.limiter {
+            text += &format!("; the step was cut to {:.1e} by {limiter}", newton.last_fraction);
+        }
+        let elastic = self.elastic.iter().map(|e| e.as_ref());
+        let contact = self.contact.iter().map(|c| c as &dyn Energy);
+        for energy in elastic.chain(contact) {
+            if let Some(worst) = energy.worst_element(q) {
+                let norm = worst.gradient_norm;
+                text += &format!("; largest force of '{}': {norm:.2e} N at {}", energy.name(), worst.description);
+            }
+        }
+        text + ". Try a smaller time step, a finer mesh where it folds, or more iterations"
+    }
+}
+
+impl From<(usize, SolveError)> for StepError {
+    fn from((step, error): (usize, SolveError)) -> Self {
+        match error {
+            SolveError::NotFinite { energy, element } => Self::NotFinite { step, energy, element },
+            other => Self::LinearSolve { step, reason: other.to_string() },
+        }
+    }
+}

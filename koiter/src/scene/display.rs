@@ -1,0 +1,78 @@
+//! What is shown of a model: its shells, and obstacles as triangle meshes.
+
+use super::model::{Model, Obstacle, ObstacleShape};
+use crate::Vec3;
+use crate::mesh::generate;
+
+/// A surface to show.
+#[derive(Clone, Debug)]
+pub struct PartTopology {
+    /// Name in the scene.
+    pub name: String,
+    /// Whether it is an obstacle.
+    pub is_obstacle: bool,
+    /// Faces, counted from the part's first vertex.
+    pub faces: Vec<[u32; 3]>,
+    /// Number of vertices.
+    pub num_vertices: usize,
+    /// Thickness [m]; 0 for obstacles.
+    pub thickness: f64,
+    /// Vertices at time 0 before any motion [m].
+    pub start_positions: Vec<Vec3>,
+}
+
+/// Planes are shown as squares this many times the extent of the shells.
+const PLANE_EXTENT: f64 = 3.0;
+
+pub(super) fn tessellate(model: &Model) -> Vec<PartTopology> {
+    let shells = model.shells.iter().map(|shell| PartTopology {
+        name: shell.name.clone(),
+        is_obstacle: false,
+        faces: shell.surface.mesh.faces().to_vec(),
+        num_vertices: shell.surface.mesh.num_vertices(),
+        thickness: shell.thickness,
+        start_positions: shell.surface.positions.clone(),
+    });
+    let extent = model
+        .shells
+        .iter()
+        .map(|s| {
+            let (low, high) = s.surface.bounding_box();
+            (high - low).norm()
+        })
+        .fold(1e-3, f64::max);
+    shells.chain(model.obstacles.iter().map(|obstacle| obstacle_part(obstacle, extent))).collect()
+}
+
+fn obstacle_part(obstacle: &Obstacle, extent: f64) -> PartTopology {
+    let (positions, faces) = match &obstacle.shape {
+        ObstacleShape::Plane { point, normal } => {
+            let across = if normal.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };
+            let u = normal.cross(&across).normalize() * (0.5 * PLANE_EXTENT * extent);
+            let v = normal.cross(&u);
+            (vec![point - u - v, point + u - v, point + u + v, point - u + v], vec![[0, 1, 2], [0, 2, 3]])
+        }
+        ObstacleShape::Sphere { center, radius } => {
+            let ball = generate::icosphere(*radius, 4).expect("a sphere has a positive radius");
+            (ball.positions.iter().map(|x| x + center).collect(), ball.mesh.faces().to_vec())
+        }
+        ObstacleShape::Capsule { ends, radius } => capsule(ends, *radius),
+        ObstacleShape::Mesh(surface) => (surface.positions.clone(), surface.mesh.faces().to_vec()),
+    };
+    PartTopology {
+        name: obstacle.name.clone(),
+        is_obstacle: true,
+        num_vertices: positions.len(),
+        faces,
+        thickness: 0.0,
+        start_positions: positions,
+    }
+}
+
+/// A sphere whose vertices are moved to the end of the axis on their side.
+fn capsule(ends: &[Vec3; 2], radius: f64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let ball = generate::icosphere(radius, 4).expect("a capsule has a positive radius");
+    let axis = ends[1] - ends[0];
+    let place = |x: &Vec3| x + if x.dot(&axis) < 0.0 { ends[0] } else { ends[1] };
+    (ball.positions.iter().map(place).collect(), ball.mesh.faces().to_vec())
+}

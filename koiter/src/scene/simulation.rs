@@ -1,0 +1,231 @@
+//! A running simulation.
+
+use super::assemble::{Assembly, BuildError, assemble};
+use super::display::{PartTopology, tessellate};
+use super::model::{IntegratorKind, Model};
+use crate::Vec3;
+use crate::assembly::Dof;
+use crate::integrate::{ImplicitEuler, Integrator, Prescribed, QuasiStatic, State, StepError, StepReport, System};
+
+/// A model with its state, advanced step by step.
+pub struct Simulation {
+    model: Model,
+    system: System,
+    state: State,
+    integrator: Box<dyn Integrator>,
+    obstacles: Vec<(Dof, Vec<Vec3>)>,
+    start_angles: Vec<f64>,
+    parts: Vec<PartTopology>,
+}
+
+/// Sizes of a simulation.
+#[derive(Clone, Debug, Default)]
+pub struct SystemStats {
+    /// Vertices of shells.
+    pub vertices: usize,
+    /// Faces of shells.
+    pub faces: usize,
+    /// Unknowns that are solved for.
+    pub dofs: usize,
+    /// Entries of the Hessian without contact, both triangles.
+    pub hessian_nonzeros: usize,
+    /// Memory a step takes, estimated [bytes].
+    pub estimated_memory_bytes: usize,
+    /// Names of the energies.
+    pub energies: Vec<&'static str>,
+}
+
+impl Simulation {
+    /// Builds energies and masses, solves for rest and start directors, and checks the start.
+    ///
+    /// # Errors
+    /// A rest state that cannot be used; a start that touches or intersects.
+    pub fn new(model: Model) -> Result<Self, BuildError> {
+        let Assembly { system, q, velocities, obstacles } = assemble(&model)?;
+        let integrator: Box<dyn Integrator> = match model.integrator {
+            IntegratorKind::ImplicitEuler => {
+                Box::new(ImplicitEuler { velocity_tolerance: model.solver.velocity_tolerance })
+            }
+            IntegratorKind::QuasiStatic => {
+                Box::new(QuasiStatic { displacement_tolerance: model.solver.displacement_tolerance })
+            }
+        };
+        let parts = tessellate(&model);
+        let state = State { q, velocities, time: 0.0, step: 0 };
+        let start_angles = state.q.clone();
+        Ok(Self { model, system, state, integrator, obstacles, start_angles, parts })
+    }
+
+    /// Advances by one step of `dt` [s] (statics: to the equilibrium at the schedules' values after `dt`).
+    ///
+    /// # Errors
+    /// See [`StepError`]; the state is then that before the step.
+    pub fn step(&mut self, dt: f64) -> Result<StepReport, StepError> {
+        let time = self.state.time + dt;
+        if let Some(scale) = &self.model.gravity_scale {
+            self.system.gravity.acceleration = self.model.gravity * scale.at(time);
+        }
+        let prescribed = self.prescribed_at(time);
+        self.integrator.step(&mut self.system, &mut self.state, &prescribed, dt)
+    }
+
+    fn prescribed_at(&self, time: f64) -> Prescribed {
+        let mut is_fixed = vec![false; self.system.layout.num_solved_dofs()];
+        let mut target = self.state.q.clone();
+        for constraint in self.model.constraints.iter().filter(|c| time <= c.until) {
+            let shell = &self.model.shells[constraint.shell];
+            let part = &self.system.space.shells[constraint.shell];
+            let mut held = vec![false; shell.surface.mesh.num_vertices()];
+            for vertex in &constraint.vertices {
+                let v = vertex.0 as usize;
+                held[v] = true;
+                let x = constraint.motion.apply(shell.surface.positions[v], time);
+                let start = part.first_vertex.0 as usize + 3 * v;
+                for axis in (0..3).filter(|&axis| constraint.axes[axis]) {
+                    is_fixed[start + axis] = true;
+                    target[start + axis] = x[axis];
+                }
+            }
+            let Some(first_edge) = part.first_edge.filter(|_| constraint.clamp_directors) else { continue };
+            for (edge, [u, v]) in shell.surface.mesh.edges().iter().enumerate() {
+                if held[*u as usize] && held[*v as usize] {
+                    let dof = first_edge.0 as usize + edge;
+                    is_fixed[dof] = true;
+                    target[dof] = self.start_angles[dof];
+                }
+            }
+        }
+        for (obstacle, (first, points)) in self.model.obstacles.iter().zip(&self.obstacles) {
+            for (i, x) in points.iter().enumerate() {
+                let start = first.0 as usize + 3 * i;
+                target[start..start + 3].copy_from_slice(obstacle.motion.apply(*x, time).as_slice());
+            }
+        }
+        Prescribed { is_fixed, target }
+    }
+
+    /// Simulated time [s].
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    /// Steps taken.
+    pub fn step_count(&self) -> usize {
+        self.state.step
+    }
+
+    /// What is simulated.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Masses [kg] and rotational inertias [kg·m²] of the solved unknowns.
+    pub fn masses(&self) -> &[f64] {
+        &self.system.masses
+    }
+
+    /// Vertex positions of a shell [m].
+    pub fn shell_positions(&self, shell: usize) -> Vec<Vec3> {
+        self.shell_points(shell, &self.state.q)
+    }
+
+    /// Vertex velocities of a shell [m/s].
+    pub fn shell_velocities(&self, shell: usize) -> Vec<Vec3> {
+        self.shell_points(shell, &self.state.velocities)
+    }
+
+    fn shell_points(&self, shell: usize, values: &[f64]) -> Vec<Vec3> {
+        let part = &self.system.space.shells[shell];
+        (0..part.mesh.num_vertices()).map(|v| part.position(v, values)).collect()
+    }
+
+    /// Edge angles of a shell [rad]; empty for models without directors.
+    pub fn edge_angles(&self, shell: usize) -> Vec<f64> {
+        let part = &self.system.space.shells[shell];
+        part.first_edge.map_or_else(Vec::new, |first| {
+            self.state.q[first.0 as usize..first.0 as usize + part.mesh.num_edges()].to_vec()
+        })
+    }
+
+    /// Energies by name [J].
+    pub fn energies(&self) -> Vec<(&'static str, f64)> {
+        self.system.energies(&self.state)
+    }
+
+    /// The surfaces to show: shells, then obstacles.
+    pub fn parts(&self) -> &[PartTopology] {
+        &self.parts
+    }
+
+    /// Positions of the vertices of all parts [m].
+    pub fn display_positions(&self) -> Vec<Vec3> {
+        let mut positions: Vec<Vec3> =
+            (0..self.model.shells.len()).flat_map(|shell| self.shell_positions(shell)).collect();
+        let obstacles = self.model.obstacles.iter().zip(&self.parts[self.model.shells.len()..]);
+        for (obstacle, part) in obstacles {
+            positions.extend(part.start_positions.iter().map(|x| obstacle.motion.apply(*x, self.state.time)));
+        }
+        positions
+    }
+
+    /// Values on the faces of all parts; zero on obstacles: largest principal Green strain, bending energy density
+    /// [J/m²], mean curvature [1/m].
+    pub fn face_fields(&self) -> Vec<(&'static str, Vec<f32>)> {
+        let shells = &self.system.space.shells;
+        let on_obstacles: usize = self.parts[shells.len()..].iter().map(|p| p.faces.len()).sum();
+        let q = &self.state.q;
+        let gather = |value: &dyn Fn(usize, usize) -> f64| -> Vec<f32> {
+            let on_shells = shells.iter().enumerate().flat_map(|(s, part)| {
+                (0..part.mesh.num_faces()).map(move |f| (s, f))
+            });
+            on_shells
+                .map(|(s, f)| value(s, f) as f32)
+                .chain(std::iter::repeat_n(0.0, on_obstacles))
+                .collect()
+        };
+        vec![
+            ("strain", gather(&|s, f| shells[s].largest_strain(f, q))),
+            ("bending_energy_density", gather(&|s, f| self.bending_density(s, f))),
+            ("mean_curvature", gather(&|s, f| shells[s].mean_curvature(f, q))),
+        ]
+    }
+
+    /// `(h³/12) w(II)` of a face [J/m²] by the shown directors.
+    fn bending_density(&self, shell: usize, face: usize) -> f64 {
+        let (part, spec) = (&self.system.space.shells[shell], &self.model.shells[shell]);
+        let form = part.second_form(face, &self.state.q) - part.rest_forms[face];
+        let material = crate::material::StVenantKirchhoff::new(spec.youngs_modulus, spec.poissons_ratio);
+        let density = crate::material::Material::response(&material, face, &form).density;
+        spec.thickness.powi(3) / 12.0 * density
+    }
+
+    /// Sizes and costs.
+    pub fn stats(&self) -> SystemStats {
+        let sum = |f: &dyn Fn(&crate::mesh::TriMesh) -> usize| -> usize {
+            self.model.shells.iter().map(|s| f(&s.surface.mesh)).sum()
+        };
+        let dofs = self.system.layout.num_solved_dofs();
+        let (faces, directors) = (sum(&|m| m.num_faces()), self.system.layout.num_solved_nodes());
+        let has_directors = directors > sum(&|m| m.num_vertices());
+        // Entries a face, both triangles, counted on large Delaunay meshes: 166 with directors, 58 with hinges.
+        let hessian_nonzeros = faces * if has_directors { 166 } else { 58 };
+        // Factor entries grow like n log n: about 30 an unknown at 10⁴ unknowns, 8 more for every doubling.
+        let growth = 30.0 + 8.0 * (dofs.max(10_000) as f64 / 1e4).log2();
+        let factor = 1.3 * growth * dofs as f64 * 8.0;
+        let mut energies: Vec<&'static str> = self.energies().into_iter().map(|(name, _)| name).collect();
+        energies.dedup();
+        SystemStats {
+            vertices: sum(&|m| m.num_vertices()),
+            faces,
+            dofs,
+            hessian_nonzeros,
+            estimated_memory_bytes: factor as usize + hessian_nonzeros * 10 + faces * 2_000,
+            energies,
+        }
+    }
+}
