@@ -13,7 +13,7 @@ use crate::energy::bending::{BendingStencil, DirectorShape, curvatures, director
 use crate::energy::{Gravity, Inertia};
 use crate::mesh::TriMesh;
 use crate::rest::RestFrame;
-use crate::solve::{LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError, minimize};
+use crate::solve::{HessianChoice, LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError, minimize};
 
 /// Positions, edge angles and velocities at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -168,7 +168,7 @@ impl System {
             is_fixed: &prescribed.is_fixed,
             target: &prescribed.target,
         };
-        let options = NewtonOptions { tolerance, max_iterations: self.max_iterations };
+        let options = NewtonOptions { tolerance, max_iterations: self.max_iterations, hessian: HessianChoice::Projected };
         minimize(&mut problem, &options, &mut self.workspace, q)
     }
 

@@ -5,5 +5,5 @@ mod newton;
 mod ordering;
 
 pub use cholesky::{Factorization, NotPositiveDefinite, SparseCholesky};
-pub use newton::{LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError, minimize};
+pub use newton::{HessianChoice, LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError, minimize};
 pub use ordering::{NodeOrdering, nested_dissection};

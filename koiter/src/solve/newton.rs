@@ -36,6 +36,20 @@ pub struct NewtonOptions {
     pub tolerance: f64,
     /// Largest number of iterations.
     pub max_iterations: usize,
+    /// Which second derivatives give the steps.
+    pub hessian: HessianChoice,
+}
+
+/// Which second derivatives give the steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HessianChoice {
+    /// Projected, element by element: steps always go downhill, but convergence is only linear where elements have
+    /// negative curvature that their sum has not.
+    #[default]
+    Projected,
+    /// The true Hessian where it is positive definite, projected elsewhere: convergence is quadratic, at the price of a
+    /// second assembly where it is not.
+    ExactWhereConvex,
 }
 
 /// What happened.
@@ -176,6 +190,12 @@ impl LinearWorkspace {
         self.matrix = Some(SymmetricMatrix::zeros(pattern));
     }
 
+    /// Factorises the assembled matrix, if it is positive definite.
+    fn factorize_as_it_is(&mut self) -> Result<(), usize> {
+        let matrix = self.matrix.as_ref().expect("the matrix was assembled");
+        self.factor.factorize(matrix).map_err(|failure| failure.dof)
+    }
+
     /// Factorises the assembled matrix, with a diagonal shift if it must be; returns the number of shifts tried.
     fn factorize(&mut self) -> Result<usize, usize> {
         let matrix = self.matrix.as_mut().expect("the matrix was assembled");
@@ -220,7 +240,7 @@ pub fn minimize(
     report.spend("contact", start);
     let mut trial = vec![0.0; q.len()];
     while report.iterations < options.max_iterations {
-        let step = newton_step(problem, workspace, q, &mut report)?;
+        let step = newton_step(problem, options.hessian, workspace, q, &mut report)?;
         report.iterations += 1;
         report.last_step = problem.space.displacement(q, &step.direction);
         let moving = step.remaining > 0.0;
@@ -250,6 +270,7 @@ struct NewtonStep {
 
 fn newton_step(
     problem: &mut Problem<'_>,
+    choice: HessianChoice,
     workspace: &mut LinearWorkspace,
     q: &[f64],
     report: &mut NewtonReport,
@@ -273,6 +294,48 @@ fn newton_step(
         })
         .collect();
     let remaining = direction.iter().fold(0.0f64, |m, d| m.max(d.abs()));
+    let mut system = None;
+    if choice == HessianChoice::ExactWhereConvex {
+        let (gradient, mut rhs) = assemble(problem, workspace, q, PsdProjection::Exact, &direction, report)?;
+        let start = Instant::now();
+        if workspace.factorize_as_it_is().is_ok() {
+            workspace.factor.solve(&mut rhs);
+            system = Some((gradient, rhs));
+        }
+        report.spend("linear solve", start);
+    }
+    let (gradient, solution) = match system {
+        Some(solved) => solved,
+        None => {
+            let (gradient, mut rhs) = assemble(problem, workspace, q, PsdProjection::Clamp, &direction, report)?;
+            let start = Instant::now();
+            report.shifts += workspace.factorize().map_err(|dof| SolveError::Indefinite {
+                unknown: problem.space.describe(dof),
+            })?;
+            workspace.factor.solve(&mut rhs);
+            report.spend("linear solve", start);
+            (gradient, rhs)
+        }
+    };
+    direction[..solved].copy_from_slice(&solution);
+    let slope = gradient.iter().zip(&direction).map(|(g, d)| g * d).sum();
+    Ok(NewtonStep {
+        direction,
+        slope,
+        remaining,
+    })
+}
+
+/// Fills the matrix; returns the gradient and the right-hand side, with prescribed unknowns taken out of both.
+fn assemble(
+    problem: &mut Problem<'_>,
+    workspace: &mut LinearWorkspace,
+    q: &[f64],
+    projection: PsdProjection,
+    direction: &[f64],
+    report: &mut NewtonReport,
+) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
+    let solved = problem.layout.num_solved_dofs();
     let mut gradient = vec![0.0; q.len()];
     let mut coupling = vec![0.0; solved];
     let matrix = workspace.matrix.as_mut().expect("the pattern was updated");
@@ -285,36 +348,16 @@ fn newton_step(
             prescribed_step: &direction[solved..],
             coupling: &mut coupling,
         };
-        energy.add_derivatives(q, PsdProjection::Clamp, &mut gradient, &mut hessian);
-        report.spend(
-            if energy.has_changing_pattern() {
-                "contact"
-            } else {
-                "assembly"
-            },
-            start,
-        );
+        energy.add_derivatives(q, projection, &mut gradient, &mut hessian);
+        let part = if energy.has_changing_pattern() { "contact" } else { "assembly" };
+        report.spend(part, start);
     }
-    let start = Instant::now();
     let mut rhs: Vec<f64> = (0..solved).map(|i| -gradient[i] - coupling[i]).collect();
     if rhs.iter().any(|g| !g.is_finite()) {
         return Err(not_finite(&problem.energies, q));
     }
     matrix.fix(problem.is_fixed, &direction[..solved], &mut rhs);
-    report.shifts += workspace
-        .factorize()
-        .map_err(|dof| SolveError::Indefinite {
-            unknown: problem.space.describe(dof),
-        })?;
-    workspace.factor.solve(&mut rhs);
-    direction[..solved].copy_from_slice(&rhs);
-    report.spend("linear solve", start);
-    let slope = gradient.iter().zip(&direction).map(|(g, d)| g * d).sum();
-    Ok(NewtonStep {
-        direction,
-        slope,
-        remaining,
-    })
+    Ok((gradient, rhs))
 }
 
 fn not_finite(energies: &[&mut dyn Energy], q: &[f64]) -> SolveError {
