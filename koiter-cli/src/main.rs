@@ -1,3 +1,42 @@
-//! The command line of Koiter.
+//! The command line of Koiter: `koiter run`, `check`, `render`, `export`.
+//!
+//! Exit status: 0 done; 1 the run failed (it did not converge, or was interrupted); 2 the input is wrong. Errors go to
+//! standard error, results to standard output, progress to a terminal only.
 #![forbid(unsafe_code)]
-fn main() {}
+
+mod arguments;
+mod check;
+mod debug_mesh;
+mod export;
+mod failure;
+mod logger;
+mod memory;
+mod pictures;
+mod probes;
+mod render;
+mod run;
+mod scene_source;
+
+use std::process::ExitCode;
+
+use arguments::{Arguments, Verb};
+use clap::Parser;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    failure::set_style();
+    logger::install();
+    let result = match arguments.verb {
+        Verb::Run(arguments) => run::run(&arguments),
+        Verb::Check(arguments) => check::check(&arguments),
+        Verb::Render(arguments) => render::render(&arguments),
+        Verb::Export(arguments) => export::export(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.print();
+            failure.exit_code()
+        }
+    }
+}

@@ -4,7 +4,7 @@ use super::assemble::{Assembly, BuildError, assemble};
 use super::display::{PartTopology, tessellate};
 use super::model::{IntegratorKind, Model};
 use crate::Vec3;
-use crate::assembly::Dof;
+use crate::assembly::{Dof, Energy};
 use crate::integrate::{ImplicitEuler, Integrator, Prescribed, QuasiStatic, State, StepError, StepReport, System};
 
 /// A model with its state, advanced step by step.
@@ -16,6 +16,8 @@ pub struct Simulation {
     obstacles: Vec<(Dof, Vec<Vec3>)>,
     start_angles: Vec<f64>,
     parts: Vec<PartTopology>,
+    /// Mass times acceleration of the last step [N]; zero in statics.
+    momentum_rates: Vec<f64>,
 }
 
 /// Sizes of a simulation.
@@ -53,7 +55,8 @@ impl Simulation {
         let parts = tessellate(&model);
         let state = State { q, velocities, time: 0.0, step: 0 };
         let start_angles = state.q.clone();
-        Ok(Self { model, system, state, integrator, obstacles, start_angles, parts })
+        let momentum_rates = vec![0.0; system.masses.len()];
+        Ok(Self { model, system, state, integrator, obstacles, start_angles, parts, momentum_rates })
     }
 
     /// Advances by one step of `dt` [s] (statics: to the equilibrium at the schedules' values after `dt`).
@@ -66,7 +69,13 @@ impl Simulation {
             self.system.gravity.acceleration = self.model.gravity * scale.at(time);
         }
         let prescribed = self.prescribed_at(time);
-        self.integrator.step(&mut self.system, &mut self.state, &prescribed, dt)
+        let before = self.state.velocities.clone();
+        let report = self.integrator.step(&mut self.system, &mut self.state, &prescribed, dt)?;
+        if self.model.integrator == IntegratorKind::ImplicitEuler {
+            let changes = self.state.velocities.iter().zip(&before).map(|(new, old)| (new - old) / dt);
+            self.momentum_rates = self.system.masses.iter().zip(changes).map(|(m, a)| m * a).collect();
+        }
+        Ok(report)
     }
 
     fn prescribed_at(&self, time: f64) -> Prescribed {
@@ -150,6 +159,34 @@ impl Simulation {
         part.first_edge.map_or_else(Vec::new, |first| {
             self.state.q[first.0 as usize..first.0 as usize + part.mesh.num_edges()].to_vec()
         })
+    }
+
+    /// Total force that a constraint exerts on its vertices [N], friction of contact left out.
+    ///
+    /// The force that balances elasticity, gravity, contact and inertia of the last step at the held coordinates; where
+    /// two constraints hold the same coordinate both are told its force.
+    pub fn reaction(&self, constraint: usize) -> Vec3 {
+        let mut gradient = vec![0.0; self.system.layout.num_dofs()];
+        for energy in &self.system.elastic {
+            energy.add_gradient(&self.state.q, &mut gradient);
+        }
+        self.system.gravity.add_gradient(&self.state.q, &mut gradient);
+        if let Some(contact) = &self.system.contact {
+            contact.add_gradient(&self.state.q, &mut gradient);
+        }
+        let constraint = &self.model.constraints[constraint];
+        let mut force = Vec3::zeros();
+        if self.state.time > constraint.until {
+            return force;
+        }
+        let first = self.system.space.shells[constraint.shell].first_vertex.0 as usize;
+        for vertex in &constraint.vertices {
+            for axis in (0..3).filter(|&axis| constraint.axes[axis]) {
+                let dof = first + 3 * vertex.0 as usize + axis;
+                force[axis] += gradient[dof] + self.momentum_rates[dof];
+            }
+        }
+        force
     }
 
     /// Energies by name [J].

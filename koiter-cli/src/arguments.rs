@@ -1,0 +1,197 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Thin shells: cloth, paper, cans and leaves, with bending that converges and contact that never intersects.
+#[derive(Debug, Parser)]
+#[command(
+    name = "koiter",
+    version,
+    arg_required_else_help = true,
+    after_help = "\
+Examples:
+  koiter run sphere-drape                      a cotton square falls on a ball: frames, figures, a film
+  koiter run my/scene.toml --set time.end=2    any value of a scene can be set from here
+  koiter check my/scene.toml                   reads and checks everything, runs nothing
+
+Exit status: 0 done, 1 the run failed, 2 the input is wrong."
+)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Runs a scene into a result folder: frames, figures, pictures and a film.
+    Run(RunArguments),
+    /// Reads and checks a scene and says what it is; runs nothing.
+    Check(CheckArguments),
+    /// Makes a picture or a film of a result.
+    Render(RenderArguments),
+    /// Writes a result in a format that other programs open.
+    Export(ExportArguments),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+SCENE is a scene.toml, a folder that holds one, or a scene that ships with Koiter:
+  sphere-drape, drape-n, cantilever, your-own-mesh
+
+Examples:
+  koiter run sphere-drape
+  koiter run sphere-drape --set resolution=tiny --out quick
+  koiter run sphere-drape --set shell.cloth.material=paper --set time.end=2
+  koiter run my/scene.toml --until 0.5 --no-film --json
+
+The result folder holds manifest.json, topology.bin, frames/, stats.jsonl (a line a step), probes.csv and
+summary.json; a result that is there already is replaced.")]
+pub(crate) struct RunArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Result folder [default: results/<name of the scene>]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Stop at this simulated time [s]
+    #[arg(long, value_name = "T")]
+    pub(crate) until: Option<f64>,
+    /// Number of threads [default: all cores]; the result is the same bits for any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) threads: Option<u16>,
+    /// Print nothing but warnings and errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+    /// Print the summary as one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Make a picture of the end and a film when the run is over (the default)
+    #[arg(long, overrides_with = "no_film")]
+    pub(crate) film: bool,
+    /// Make no picture and no film
+    #[arg(long)]
+    pub(crate) no_film: bool,
+    /// If surfaces intersect at the start, write them to this PLY file with the offending faces coloured
+    #[arg(long, value_name = "FILE.ply")]
+    pub(crate) debug_mesh: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  koiter check sphere-drape
+  koiter check my/scene.toml --set resolution=paper --json")]
+pub(crate) struct CheckArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// If surfaces intersect at the start, write them to this PLY file with the offending faces coloured
+    #[arg(long, value_name = "FILE.ply")]
+    pub(crate) debug_mesh: Option<PathBuf>,
+}
+
+/// A scene and what is changed in it.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArguments {
+    /// Scene file, folder with a scene.toml, or name of a scene that ships with Koiter
+    pub(crate) scene: String,
+    /// Set a value of the scene by dotted path, such as time.dt=0.01 or shell.cloth.thickness=5e-4
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  koiter render results/sphere-drape -o end.png
+  koiter render results/sphere-drape -o drape.mp4 --size 1280x720
+  koiter render results/sphere-drape -o strain.png --frame 40 --color strain --camera azimuth=60,elevation=20")]
+pub(crate) struct RenderArguments {
+    /// Result folder
+    pub(crate) result: PathBuf,
+    /// Picture (.png) or film (.mp4, needs ffmpeg; .gif)
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Frame of a picture, from 0 [default: the last]
+    #[arg(long, value_name = "K")]
+    pub(crate) frame: Option<usize>,
+    /// Colour by a field: strain, bending_energy_density or mean_curvature
+    #[arg(long, value_name = "FIELD")]
+    pub(crate) color: Option<String>,
+    /// front, side, top, iso, or azimuth=30,elevation=20,zoom=1.2
+    #[arg(long, value_name = "VIEW")]
+    pub(crate) camera: Option<koiter_render::CameraView>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
+    pub(crate) size: (u32, u32),
+    /// Frames a second of a film [default: real time, at most 30]
+    #[arg(long, value_name = "FPS")]
+    pub(crate) fps: Option<f64>,
+    /// Draw the edges of the triangles
+    #[arg(long)]
+    pub(crate) wireframe: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  koiter export results/sphere-drape --to vtu -o drape.pvd      every frame, for ParaView
+  koiter export results/sphere-drape --to obj -o end.obj        the last frame
+  koiter export results/sphere-drape --to ply -o k40.ply --frame 40")]
+pub(crate) struct ExportArguments {
+    /// Result folder
+    pub(crate) result: PathBuf,
+    /// Format
+    #[arg(long, value_enum)]
+    pub(crate) to: ExportFormat,
+    /// File to write; for a vtu series, the .pvd that lists it
+    #[arg(short, long, value_name = "PATH")]
+    pub(crate) output: PathBuf,
+    /// Frame, from 0 [default: the last; vtu: all]
+    #[arg(long, value_name = "K")]
+    pub(crate) frame: Option<usize>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ExportFormat {
+    /// Wavefront, an object a part
+    Obj,
+    /// Binary PLY with fields
+    Ply,
+    /// VTK with fields; a series and its .pvd unless --frame is given
+    Vtu,
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once(['x', 'X']).and_then(|(width, height)| {
+        Some((
+            width.trim().parse::<u32>().ok()?,
+            height.trim().parse::<u32>().ok()?,
+        ))
+    });
+    sides
+        .filter(|&(width, height)| width > 0 && height > 0)
+        .ok_or_else(|| "write it as 1280x720".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_are_two_positive_numbers() {
+        assert_eq!(parse_size("640x360"), Ok((640, 360)));
+        for text in ["640", "0x3", "ax3", "640x", "-1x3"] {
+            assert!(parse_size(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! `koiter check`: reads everything, runs nothing.
+
+use serde::Serialize;
+
+use crate::arguments::CheckArguments;
+use crate::failure::Failure;
+use crate::memory;
+use crate::run::start;
+use crate::scene_source::load;
+
+/// What a scene is.
+#[derive(Serialize)]
+struct Report {
+    title: String,
+    vertices: usize,
+    faces: usize,
+    dofs: usize,
+    hessian_nonzeros: usize,
+    estimated_memory_bytes: u64,
+    energies: Vec<&'static str>,
+    steps: usize,
+    dt: f64,
+    shells: Vec<ShellReport>,
+    obstacles: Vec<String>,
+    constraints: usize,
+    probes: Vec<String>,
+    warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct ShellReport {
+    name: String,
+    vertices: usize,
+    faces: usize,
+    area: f64,
+    mass: f64,
+    mean_edge: f64,
+    shortest_edge: f64,
+    min_angle_degrees: f64,
+    boundary_loops: Vec<usize>,
+}
+
+/// Checks a scene.
+pub(crate) fn check(arguments: &CheckArguments) -> Result<(), Failure> {
+    let loaded = load(&arguments.scene)?;
+    let scene = loaded.scene;
+    let shells = scene.model.shells.iter().map(|shell| {
+        let surface = &shell.surface;
+        ShellReport {
+            name: shell.name.clone(),
+            vertices: surface.mesh.num_vertices(),
+            faces: surface.mesh.num_faces(),
+            area: surface.area(),
+            mass: surface.area() * shell.thickness * shell.density,
+            mean_edge: surface.mean_edge_length(),
+            shortest_edge: surface.shortest_edge_length(),
+            min_angle_degrees: surface.min_angle().to_degrees(),
+            boundary_loops: surface.mesh.boundary_loops().iter().map(Vec::len).collect(),
+        }
+    });
+    let shells: Vec<ShellReport> = shells.collect();
+    let obstacles = scene
+        .model
+        .obstacles
+        .iter()
+        .map(|obstacle| obstacle.name.clone())
+        .collect();
+    let constraints = scene.model.constraints.len();
+    let stats = start(&scene.model, arguments.debug_mesh.as_deref())?.stats();
+    let report = Report {
+        title: scene.title,
+        vertices: stats.vertices,
+        faces: stats.faces,
+        dofs: stats.dofs,
+        hessian_nonzeros: stats.hessian_nonzeros,
+        estimated_memory_bytes: stats.estimated_memory_bytes as u64,
+        energies: stats.energies,
+        steps: scene.num_steps,
+        dt: scene.dt,
+        shells,
+        obstacles,
+        constraints,
+        probes: scene.probes.into_iter().map(|probe| probe.name).collect(),
+        warnings: scene
+            .warnings
+            .into_iter()
+            .map(|warning| warning.message)
+            .collect(),
+    };
+    if arguments.json {
+        println!("{}", serde_json::to_string(&report).map_err(Failure::run)?);
+    } else {
+        report.print();
+    }
+    Ok(())
+}
+
+impl Report {
+    fn print(&self) {
+        if !self.title.is_empty() {
+            println!("{}", self.title);
+        }
+        for shell in &self.shells {
+            println!(
+                "shell {}: {} vertices, {} triangles, {:.4} m², {:.4} kg, edges {:.2e} m (shortest {:.2e} m), \
+                 smallest angle {:.1}°, boundary loops of {:?} vertices",
+                shell.name,
+                shell.vertices,
+                shell.faces,
+                shell.area,
+                shell.mass,
+                shell.mean_edge,
+                shell.shortest_edge,
+                shell.min_angle_degrees,
+                shell.boundary_loops
+            );
+        }
+        if !self.obstacles.is_empty() {
+            println!("obstacles: {}", self.obstacles.join(", "));
+        }
+        println!("constraints: {}", self.constraints);
+        println!("energies: {}", self.energies.join(", "));
+        println!(
+            "in all {} vertices, {} triangles, {} degrees of freedom, {} Hessian entries, about {}",
+            self.vertices,
+            self.faces,
+            self.dofs,
+            self.hessian_nonzeros,
+            memory::readable(self.estimated_memory_bytes)
+        );
+        println!("{} steps of {} s", self.steps, self.dt);
+        println!("the scene is sound");
+    }
+}

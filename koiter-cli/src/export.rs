@@ -1,0 +1,56 @@
+//! `koiter export`: a result for other programs.
+
+use koiter::io::result::ResultReader;
+use koiter::io::write::{MeshWithFields, write_obj, write_ply, write_vtu, write_vtu_series};
+
+use crate::arguments::{ExportArguments, ExportFormat};
+use crate::failure::Failure;
+
+/// Exports a frame, or all as a VTK series.
+pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
+    let reader = ResultReader::open(&arguments.result).map_err(Failure::input)?;
+    let Some(last) = reader.len().checked_sub(1) else {
+        return Err(Failure::input(format!(
+            "{} has no frames",
+            arguments.result.display()
+        )));
+    };
+    let is_series = arguments.to == ExportFormat::Vtu && arguments.frame.is_none();
+    let extension = match (arguments.to, is_series) {
+        (ExportFormat::Obj, _) => "obj",
+        (ExportFormat::Ply, _) => "ply",
+        (ExportFormat::Vtu, true) => "pvd",
+        (ExportFormat::Vtu, false) => "vtu",
+    };
+    let given = arguments
+        .output
+        .extension()
+        .map(|given| given.to_ascii_lowercase());
+    let output = match given {
+        None => arguments.output.with_extension(extension),
+        Some(given) if given == extension => arguments.output.clone(),
+        Some(_) => {
+            let message = format!(
+                "{}: this export must end in .{extension}",
+                arguments.output.display()
+            );
+            return Err(Failure::input(message));
+        }
+    };
+    if is_series {
+        write_vtu_series(&reader, &output, |_| {}).map_err(Failure::run)?;
+    } else {
+        let frame = reader
+            .frame(arguments.frame.unwrap_or(last))
+            .map_err(Failure::input)?;
+        let mesh = MeshWithFields::of_frame(&reader, &frame);
+        match arguments.to {
+            ExportFormat::Obj => write_obj(&output, &mesh),
+            ExportFormat::Ply => write_ply(&output, &mesh),
+            ExportFormat::Vtu => write_vtu(&output, &mesh, Some(frame.time)),
+        }
+        .map_err(Failure::run)?;
+    }
+    println!("made: {}", output.display());
+    Ok(())
+}

@@ -1,0 +1,273 @@
+//! Pictures and films of a result folder.
+
+mod frame_view;
+
+use std::path::{Path, PathBuf};
+
+use indicatif::ProgressBar;
+use koiter::io::result::ResultReader;
+use koiter::scene::spec::OutputSpec;
+use koiter_render::{
+    Bounds, Camera, CameraView, ColorBy, ColorMap, Film, FilmError, Image, Quality, RenderOptions,
+    render,
+};
+
+use crate::failure::Failure;
+use frame_view::{FrameView, Topology};
+
+/// Films of a run: small, so that they do not keep the user waiting.
+const FILM_SIZE: (u32, u32) = (640, 360);
+/// Most frames a second of a film in real time.
+const MAX_FPS: f64 = 30.0;
+/// Most frames of the film after a run; of longer runs every second, third, … frame is shown.
+const MAX_FILM_FRAMES: usize = 150;
+/// Share of the values that the colours cover; the rest (tight folds) is drawn in the last colour.
+const COVERED: f64 = 0.99;
+
+/// How pictures look.
+#[derive(Clone, Debug)]
+pub(crate) struct Look {
+    pub(crate) size: (u32, u32),
+    pub(crate) camera: CameraView,
+    pub(crate) color: Option<String>,
+    pub(crate) wireframe: bool,
+}
+
+/// Makes the pictures that end a run; returns their paths.
+pub(crate) fn after_run(
+    folder: &Path,
+    output: &OutputSpec,
+    quiet: bool,
+) -> Result<Vec<PathBuf>, Failure> {
+    let reader = ResultReader::open(folder).map_err(Failure::run)?;
+    let camera = output
+        .camera
+        .as_deref()
+        .map_or(Ok(CameraView::default()), str::parse);
+    let camera = camera.map_err(|error| Failure::input(format!("output.camera: {error}")))?;
+    let look = Look {
+        size: (1280, 720),
+        camera,
+        color: output.color.clone(),
+        wireframe: false,
+    };
+    let mut album = Album::open(&reader, look)?;
+    let picture = folder.join("final.png");
+    album.picture(reader.len().saturating_sub(1), &picture)?;
+    album.look.size = FILM_SIZE;
+    let film = album.film_in_any_format(folder, quiet)?;
+    Ok(vec![picture, film])
+}
+
+/// A result folder as pictures of one look.
+pub(crate) struct Album<'a> {
+    reader: &'a ResultReader,
+    topology: Topology,
+    look: Look,
+    bounds: Bounds,
+    /// Colours of the field, the same for all frames.
+    range: Option<(f64, f64)>,
+}
+
+impl<'a> Album<'a> {
+    /// Looks through all frames for the camera and the range of colours.
+    pub(crate) fn open(reader: &'a ResultReader, look: Look) -> Result<Self, Failure> {
+        let topology = Topology::new(reader);
+        let (mut bounds, mut values) = (Bounds::EMPTY, Vec::new());
+        for index in 0..reader.len() {
+            let frame = reader.frame(index).map_err(Failure::run)?;
+            if index == 0
+                && let Some(name) = &look.color
+                && frame.field(name).is_none()
+            {
+                let names: Vec<&str> = frame
+                    .face_fields
+                    .iter()
+                    .map(|field| field.name.as_str())
+                    .collect();
+                let message = format!("the result has no field '{name}'");
+                return Err(
+                    Failure::input(message).with_help(format!("it has: {}", names.join(", ")))
+                );
+            }
+            let view = FrameView::new(&topology, frame, look.color.as_deref());
+            bounds = bounds.join(&view.bounds());
+            values.extend(view.values());
+        }
+        Ok(Self {
+            reader,
+            topology,
+            look,
+            bounds,
+            range: color_range(values),
+        })
+    }
+
+    /// Writes a picture of a frame.
+    pub(crate) fn picture(&self, frame: usize, path: &Path) -> Result<(), Failure> {
+        self.draw(frame, Quality::Still)?
+            .write_png(path)
+            .map_err(Failure::run)
+    }
+
+    /// Writes a film of all frames, in real time unless `fps` is given.
+    pub(crate) fn film(&self, path: &Path, fps: Option<f64>, quiet: bool) -> Result<(), Failure> {
+        let (stride, natural) = self.pace(usize::MAX)?;
+        self.write_film(path, stride, fps.unwrap_or(natural), quiet)
+            .map_err(|error| match error {
+                FilmFailure::Film(error @ FilmError::FrameRate { .. }) => Failure::input(error),
+                FilmFailure::Film(error) => Failure::run(error),
+                FilmFailure::Other(failure) => failure,
+            })
+    }
+
+    /// `film.mp4`, or `film.gif` where there is no ffmpeg.
+    fn film_in_any_format(&self, folder: &Path, quiet: bool) -> Result<PathBuf, Failure> {
+        let (stride, fps) = self.pace(MAX_FILM_FRAMES)?;
+        let mut path = folder.join("film.mp4");
+        let mut result = self.write_film(&path, stride, fps, quiet);
+        if let Err(FilmFailure::Film(FilmError::FfmpegMissing | FilmError::Ffmpeg { .. })) = result
+        {
+            path = folder.join("film.gif");
+            result = self.write_film(&path, stride, fps, quiet);
+        }
+        match result {
+            Ok(()) => Ok(path),
+            Err(FilmFailure::Film(error)) => Err(Failure::run(error)),
+            Err(FilmFailure::Other(failure)) => Err(failure),
+        }
+    }
+
+    fn write_film(
+        &self,
+        path: &Path,
+        stride: usize,
+        fps: f64,
+        quiet: bool,
+    ) -> Result<(), FilmFailure> {
+        let (width, height) = self.look.size;
+        let mut film = Film::create(path, fps, width, height)?;
+        let frames: Vec<usize> = (0..self.reader.len()).step_by(stride).collect();
+        let bar = if quiet {
+            ProgressBar::hidden()
+        } else {
+            ProgressBar::new(frames.len() as u64)
+        };
+        for frame in frames {
+            film.push(
+                &self
+                    .draw(frame, Quality::Film)
+                    .map_err(FilmFailure::Other)?,
+            )?;
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        film.finish()?;
+        Ok(())
+    }
+
+    /// Which frames to show, and how many a second, for real time with few frames.
+    fn pace(&self, max_frames: usize) -> Result<(usize, f64), Failure> {
+        let count = self.reader.len();
+        if count < 2 {
+            return Ok((1, 1.0));
+        }
+        let time = |index: usize| {
+            self.reader
+                .frame_info(index)
+                .map_err(Failure::run)
+                .map(|info| info.time)
+        };
+        let interval = (time(count - 1)? - time(0)?) / (count - 1) as f64;
+        if !(interval.is_finite() && interval > 0.0) {
+            return Ok((1, MAX_FPS));
+        }
+        let for_pace = (1.0 / (interval * MAX_FPS) - 1e-9).ceil() as usize;
+        let stride = for_pace.max(count.div_ceil(max_frames)).clamp(1, count);
+        Ok((
+            stride,
+            (1.0 / (interval * stride as f64)).clamp(1.0, MAX_FPS),
+        ))
+    }
+
+    fn draw(&self, index: usize, quality: Quality) -> Result<Image, Failure> {
+        let frame = self.reader.frame(index).map_err(Failure::input)?;
+        let caption = format!("t = {:.2} s", frame.time);
+        let view = FrameView::new(&self.topology, frame, self.look.color.as_deref());
+        let (width, height) = self.look.size;
+        let camera = Camera::fit(
+            &self.bounds,
+            self.look.camera,
+            f64::from(width) / f64::from(height),
+        );
+        let options = RenderOptions {
+            color: self.color_by(),
+            quality,
+            wireframe: self.look.wireframe,
+            caption: Some(caption),
+            ..RenderOptions::new(width, height, camera)
+        };
+        render(&view.scene(), &options).map_err(Failure::input)
+    }
+
+    fn color_by(&self) -> ColorBy {
+        let Some(name) = &self.look.color else {
+            return ColorBy::Part;
+        };
+        let (unit, map) = match name.as_str() {
+            "bending_energy_density" => ("J/m²", ColorMap::Viridis),
+            "mean_curvature" => ("1/m", ColorMap::CoolWarm),
+            _ => ("", ColorMap::Viridis),
+        };
+        ColorBy::Field {
+            name: name.replace('_', " "),
+            unit: unit.to_owned(),
+            map,
+            range: self.range,
+        }
+    }
+}
+
+/// The range that covers most values: about zero if there are negative ones, else from zero.
+fn color_range(values: Vec<f64>) -> Option<(f64, f64)> {
+    let mut sizes: Vec<f64> = values
+        .iter()
+        .filter(|value| value.is_finite())
+        .map(|value| value.abs())
+        .collect();
+    if sizes.is_empty() {
+        return None;
+    }
+    sizes.sort_by(f64::total_cmp);
+    let top = sizes[((sizes.len() - 1) as f64 * COVERED) as usize];
+    // A field that is zero everywhere still needs an interval.
+    let top = if top > 0.0 { top } else { 1.0 };
+    let is_signed = values.iter().any(|&value| value < 0.0);
+    Some((if is_signed { -top } else { 0.0 }, top))
+}
+
+enum FilmFailure {
+    Film(FilmError),
+    Other(Failure),
+}
+
+impl From<FilmError> for FilmFailure {
+    fn from(error: FilmError) -> Self {
+        Self::Film(error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_cover_most_values_and_are_symmetric_when_signed() {
+        assert_eq!(color_range(vec![]), None);
+        assert_eq!(color_range(vec![0.0, f64::NAN]), Some((0.0, 1.0)));
+        let mut values: Vec<f64> = (0..=200).map(f64::from).collect();
+        assert_eq!(color_range(values.clone()), Some((0.0, 198.0)));
+        values[3] = -3.0;
+        assert_eq!(color_range(values), Some((-198.0, 198.0)));
+    }
+}

@@ -1,0 +1,86 @@
+//! `probes.csv`: a row a step.
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::Path;
+
+use koiter::Vec3;
+use koiter::scene::Simulation;
+use koiter::scene::{Observable, Probe};
+use serde_json::{Map, Value, json};
+
+/// Writes the probes of a scene.
+pub(crate) struct ProbeWriter<'a> {
+    probes: &'a [Probe],
+    file: Option<File>,
+    last: Vec<Vec<f64>>,
+}
+
+impl<'a> ProbeWriter<'a> {
+    /// Starts the file; without probes there is none.
+    pub(crate) fn create(folder: &Path, probes: &'a [Probe]) -> io::Result<Self> {
+        let mut file = None;
+        if !probes.is_empty() {
+            let mut created = File::create(folder.join("probes.csv"))?;
+            let columns: Vec<String> = probes.iter().flat_map(Probe::columns).collect();
+            writeln!(created, "time,{}", columns.join(","))?;
+            file = Some(created);
+        }
+        Ok(Self {
+            probes,
+            file,
+            last: Vec::new(),
+        })
+    }
+
+    /// Measures and writes a row; it is on its way to the disk when this returns.
+    pub(crate) fn write(&mut self, simulation: &Simulation) -> io::Result<()> {
+        let state = State(simulation);
+        self.last = self
+            .probes
+            .iter()
+            .map(|probe| probe.measure(&state))
+            .collect();
+        let Some(file) = &mut self.file else {
+            return Ok(());
+        };
+        // `{}` writes every digit that is needed to read the same number again.
+        let values: Vec<String> = self.last.iter().flatten().map(f64::to_string).collect();
+        let row = format!("{},{}\n", simulation.time(), values.join(","));
+        file.write_all(row.as_bytes())
+    }
+
+    /// The last values by name: numbers, or lists of three.
+    pub(crate) fn last_values(&self) -> Value {
+        let value = |values: &Vec<f64>| match values[..] {
+            [value] => json!(value),
+            _ => json!(values),
+        };
+        let names = self.probes.iter().map(|probe| probe.name.clone());
+        Value::Object(
+            names
+                .zip(self.last.iter().map(value))
+                .collect::<Map<_, _>>(),
+        )
+    }
+}
+
+struct State<'a>(&'a Simulation);
+
+impl Observable for State<'_> {
+    fn positions(&self, shell: usize) -> Vec<Vec3> {
+        self.0.shell_positions(shell).to_vec()
+    }
+
+    fn velocities(&self, shell: usize) -> Vec<Vec3> {
+        self.0.shell_velocities(shell).to_vec()
+    }
+
+    fn energies(&self) -> Vec<(&'static str, f64)> {
+        self.0.energies()
+    }
+
+    fn reaction(&self, constraint: usize) -> Vec3 {
+        self.0.reaction(constraint)
+    }
+}

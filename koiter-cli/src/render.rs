@@ -1,0 +1,44 @@
+//! `koiter render`: a picture or a film of a result.
+
+use koiter::io::result::ResultReader;
+
+use crate::arguments::RenderArguments;
+use crate::failure::Failure;
+use crate::pictures::{Album, Look};
+
+/// Makes a picture or a film.
+pub(crate) fn render(arguments: &RenderArguments) -> Result<(), Failure> {
+    let extension = arguments
+        .output
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase();
+    if !["png", "mp4", "gif"].contains(&extension.as_str()) {
+        let message = format!(
+            "{}: a picture ends in .png, a film in .mp4 or .gif",
+            arguments.output.display()
+        );
+        return Err(Failure::input(message));
+    }
+    let reader = ResultReader::open(&arguments.result).map_err(Failure::input)?;
+    let look = Look {
+        size: arguments.size,
+        camera: arguments.camera.unwrap_or_default(),
+        color: arguments.color.clone(),
+        wireframe: arguments.wireframe,
+    };
+    let album = Album::open(&reader, look)?;
+    if extension == "png" {
+        let last = reader.len().saturating_sub(1);
+        album.picture(arguments.frame.unwrap_or(last), &arguments.output)?;
+    } else if arguments.frame.is_some() {
+        return Err(Failure::input(
+            "--frame is for pictures; a film has all frames",
+        ));
+    } else {
+        album.film(&arguments.output, arguments.fps, true)?;
+    }
+    println!("made: {}", arguments.output.display());
+    Ok(())
+}

@@ -1,0 +1,224 @@
+//! The figures of a run: a line of `stats.jsonl` a step, and `summary.json`.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use koiter::integrate::StepReport;
+use koiter::scene::SystemStats;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use serde_json::Value;
+
+use crate::memory;
+
+/// A line of `stats.jsonl`. Numbers that are not finite (the gap when nothing is near) are null.
+#[derive(Serialize)]
+pub(super) struct StatsLine<'a> {
+    step: usize,
+    time: f64,
+    dt: f64,
+    newton_iterations: usize,
+    line_search_steps: usize,
+    converged: bool,
+    residual: f64,
+    contacts: usize,
+    min_gap: f64,
+    kappa: f64,
+    #[serde(serialize_with = "as_map")]
+    energies: &'a [(&'static str, f64)],
+    #[serde(serialize_with = "as_map")]
+    seconds: &'a [(&'static str, f64)],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    diagnosis: Option<&'a str>,
+}
+
+impl<'a> StatsLine<'a> {
+    pub(super) fn new(report: &'a StepReport) -> Self {
+        Self {
+            step: report.step,
+            time: report.time,
+            dt: report.dt,
+            newton_iterations: report.newton_iterations,
+            line_search_steps: report.line_search_steps,
+            converged: report.converged,
+            residual: report.residual,
+            contacts: report.contacts,
+            min_gap: report.min_gap,
+            kappa: report.kappa,
+            energies: &report.energies,
+            seconds: &report.seconds,
+            diagnosis: report.diagnosis.as_deref(),
+        }
+    }
+}
+
+/// `summary.json`.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Summary {
+    pub(super) steps: usize,
+    pub(super) time: f64,
+    pub(super) seconds: f64,
+    #[serde(serialize_with = "as_map")]
+    pub(super) seconds_by_part: Vec<(&'static str, f64)>,
+    pub(super) newton_iterations: usize,
+    pub(super) min_gap: f64,
+    pub(super) intersections: usize,
+    pub(super) vertices: usize,
+    pub(super) faces: usize,
+    pub(super) dofs: usize,
+    pub(super) hessian_nonzeros: usize,
+    pub(super) peak_memory_bytes: Option<u64>,
+    pub(super) probes: Value,
+    pub(super) converged: bool,
+}
+
+impl Summary {
+    pub(super) fn new(stats: &SystemStats) -> Self {
+        Self {
+            steps: 0,
+            time: 0.0,
+            seconds: 0.0,
+            seconds_by_part: Vec::new(),
+            newton_iterations: 0,
+            min_gap: f64::INFINITY,
+            intersections: 0,
+            vertices: stats.vertices,
+            faces: stats.faces,
+            dofs: stats.dofs,
+            hessian_nonzeros: stats.hessian_nonzeros,
+            peak_memory_bytes: None,
+            probes: Value::Null,
+            converged: true,
+        }
+    }
+
+    /// Adds a step.
+    pub(super) fn add(&mut self, report: &StepReport) {
+        self.steps = report.step;
+        self.time = report.time;
+        self.newton_iterations += report.newton_iterations;
+        self.min_gap = self.min_gap.min(report.min_gap);
+        self.intersections += report.intersections;
+        self.converged &= report.converged;
+        for &(part, seconds) in &report.seconds {
+            match self
+                .seconds_by_part
+                .iter_mut()
+                .find(|(name, _)| *name == part)
+            {
+                Some((_, sum)) => *sum += seconds,
+                None => self.seconds_by_part.push((part, seconds)),
+            }
+        }
+    }
+
+    /// Adds what is known at the end.
+    pub(super) fn finish(&mut self, elapsed: Duration, probes: Value) {
+        self.seconds = elapsed.as_secs_f64();
+        self.probes = probes;
+        self.peak_memory_bytes = memory::peak_bytes();
+    }
+
+    /// Prints the summary for people, and the files made.
+    pub(super) fn print(&self, folder: &Path, made: &[PathBuf]) {
+        let gap = match self.min_gap.is_finite() {
+            true => format!("smallest gap {:.3e} m", self.min_gap),
+            false => "nothing came near anything".to_owned(),
+        };
+        println!(
+            "{} steps to t = {:.3} s in {:.1} s, {} Newton iterations",
+            self.steps, self.time, self.seconds, self.newton_iterations
+        );
+        println!("{} intersections; {gap}", self.intersections);
+        if let Some(bytes) = self.peak_memory_bytes {
+            println!(
+                "{} vertices, {} triangles, {} at most",
+                self.vertices,
+                self.faces,
+                memory::readable(bytes)
+            );
+        }
+        if let Value::Object(probes) = &self.probes {
+            for (name, value) in probes {
+                println!("probe {name}: {value}");
+            }
+        }
+        println!("result: {}", folder.display());
+        for path in made {
+            println!("made: {}", path.display());
+        }
+    }
+}
+
+fn as_map<S: Serializer>(
+    pairs: &impl AsRef<[(&'static str, f64)]>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let pairs = pairs.as_ref();
+    let mut map = serializer.serialize_map(Some(pairs.len()))?;
+    for (name, value) in pairs {
+        map.serialize_entry(name, value)?;
+    }
+    map.end()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_has_the_promised_keys_and_null_for_infinity() {
+        let report = StepReport {
+            step: 1,
+            min_gap: f64::INFINITY,
+            energies: vec![("membrane", 2.0)],
+            seconds: vec![("solve", 0.5)],
+            ..StepReport::default()
+        };
+        let line = serde_json::to_value(StatsLine::new(&report)).unwrap();
+        assert_eq!(line["energies"]["membrane"], 2.0);
+        assert_eq!(line["min_gap"], Value::Null);
+        for key in [
+            "step",
+            "time",
+            "dt",
+            "newton_iterations",
+            "seconds",
+            "contacts",
+            "line_search_steps",
+            "converged",
+        ] {
+            assert!(line.get(key).is_some(), "{key}");
+        }
+    }
+
+    #[test]
+    fn a_summary_adds_steps_up() {
+        let stats = SystemStats {
+            vertices: 4,
+            faces: 2,
+            dofs: 17,
+            hessian_nonzeros: 99,
+            estimated_memory_bytes: 0,
+            energies: vec![],
+        };
+        let mut summary = Summary::new(&stats);
+        for (step, converged) in [(1, true), (2, false)] {
+            summary.add(&StepReport {
+                step,
+                time: 0.1 * step as f64,
+                newton_iterations: 5,
+                seconds: vec![("solve", 0.5)],
+                min_gap: 1.0 / step as f64,
+                converged,
+                ..StepReport::default()
+            });
+        }
+        assert_eq!(
+            (summary.steps, summary.newton_iterations, summary.min_gap),
+            (2, 10, 0.5)
+        );
+        assert_eq!(summary.seconds_by_part, [("solve", 1.0)]);
+        assert!(!summary.converged);
+    }
+}

@@ -1,0 +1,62 @@
+//! From a model to a simulation, and the result folder's description of it.
+
+use std::path::Path;
+
+use koiter::io::result::{Manifest, Part, PartKind};
+use koiter::scene::model::Model;
+use koiter::scene::{BuildError, Simulation};
+
+use crate::debug_mesh;
+use crate::failure::Failure;
+use crate::scene_source::LoadedScene;
+
+/// Sets the simulation up; a start that is refused is an error of the input.
+pub(crate) fn start(model: &Model, debug_mesh: Option<&Path>) -> Result<Simulation, Failure> {
+    Simulation::new(model.clone()).map_err(|error| match (&error, debug_mesh) {
+        (BuildError::Start(start), Some(path)) => match debug_mesh::write(path, model, start) {
+            Ok(()) => Failure::input(&error)
+                .with_help(format!("the faces at fault are red in {}", path.display())),
+            Err(refusal) => Failure::input(format!(
+                "{error}\ncannot write {}: {refusal}",
+                path.display()
+            )),
+        },
+        (BuildError::Start(_), None) => Failure::input(&error)
+            .with_help("--debug-mesh FILE.ply writes the surfaces with the faces at fault in red"),
+        _ => Failure::input(&error),
+    })
+}
+
+/// Parts and faces of everything that is shown.
+pub(super) fn manifest(loaded: &LoadedScene, simulation: &Simulation) -> (Manifest, Vec<[u32; 3]>) {
+    let (mut parts, mut faces) = (Vec::new(), Vec::new());
+    let mut first_vertex = 0;
+    for part in simulation.parts() {
+        let first_face = faces.len();
+        let offset = first_vertex as u32;
+        faces.extend(
+            part.faces
+                .iter()
+                .map(|corners| corners.map(|vertex| vertex + offset)),
+        );
+        parts.push(Part {
+            name: part.name.clone(),
+            kind: if part.is_obstacle {
+                PartKind::Obstacle
+            } else {
+                PartKind::Shell
+            },
+            thickness: part.thickness,
+            vertices: first_vertex..first_vertex + part.num_vertices,
+            faces: first_face..faces.len(),
+        });
+        first_vertex += part.num_vertices;
+    }
+    let manifest = Manifest {
+        title: loaded.scene.title.clone(),
+        scene_text: loaded.text.clone(),
+        parts,
+        ..Manifest::default()
+    };
+    (manifest, faces)
+}

@@ -1,0 +1,238 @@
+//! Where scenes and their meshes come from: files, or the scenes that ship inside the program.
+
+use std::path::{Path, PathBuf};
+
+use koiter::io::read::{MeshFormat, RawMesh, ReadError};
+use koiter::io::read_mesh;
+use koiter::mesh::{MeshError, Surface, SurfaceOptions};
+use koiter::scene::{MeshSource, Scene, SceneFile, UnreadableMesh, nearest};
+
+use crate::arguments::SceneArguments;
+use crate::failure::{Failure, print_warning};
+
+/// A scene that ships with the program.
+struct Shipped {
+    name: &'static str,
+    text: &'static str,
+    meshes: &'static [(&'static str, &'static [u8])],
+}
+
+const SHIPPED: &[Shipped] = &[
+    Shipped {
+        name: "sphere-drape",
+        text: include_str!("../../scenes/sphere-drape/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "drape-n",
+        text: include_str!("../../scenes/drape-n/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "cantilever",
+        text: include_str!("../../scenes/cantilever/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "your-own-mesh",
+        text: include_str!("../../scenes/your-own-mesh/scene.toml"),
+        meshes: &[(
+            "poncho.obj",
+            include_bytes!("../../scenes/your-own-mesh/poncho.obj"),
+        )],
+    },
+];
+
+/// A scene that was read and checked, meshes included.
+pub(crate) struct LoadedScene {
+    /// Name for result folders.
+    pub(crate) name: String,
+    /// The scene as it is run, overrides included.
+    pub(crate) text: String,
+    /// The checked scene.
+    pub(crate) scene: Scene,
+}
+
+/// Finds, reads and checks a scene; prints its warnings.
+pub(crate) fn load(arguments: &SceneArguments) -> Result<LoadedScene, Failure> {
+    let found = find(&arguments.scene)?;
+    let file = SceneFile::parse(&found.display, &found.text, &arguments.overrides)?;
+    let scene = Scene::build(&file, &found.meshes)?;
+    scene.warnings.iter().for_each(print_warning);
+    Ok(LoadedScene {
+        name: found.name,
+        text: file.document.to_toml(),
+        scene,
+    })
+}
+
+struct Found {
+    name: String,
+    /// What messages call it.
+    display: String,
+    text: String,
+    meshes: Meshes,
+}
+
+enum Meshes {
+    Folder(PathBuf),
+    Shipped(&'static Shipped),
+}
+
+fn find(argument: &str) -> Result<Found, Failure> {
+    let path = Path::new(argument);
+    if path.is_dir() {
+        return read(&path.join("scene.toml"));
+    }
+    if path.exists() {
+        return read(path);
+    }
+    if let Some(shipped) = SHIPPED.iter().find(|shipped| shipped.name == argument) {
+        return Ok(Found {
+            name: argument.to_owned(),
+            display: format!("{argument}/scene.toml (shipped)"),
+            text: shipped.text.to_owned(),
+            meshes: Meshes::Shipped(shipped),
+        });
+    }
+    let names: Vec<&str> = SHIPPED.iter().map(|shipped| shipped.name).collect();
+    let failure = Failure::input(format!(
+        "there is no file, folder or shipped scene '{argument}'"
+    ));
+    let list = format!("scenes that ship: {}", names.join(", "));
+    Err(failure.with_help(match nearest(argument, names) {
+        Some(name) => format!("did you mean '{name}'? {list}"),
+        None => list,
+    }))
+}
+
+fn read(path: &Path) -> Result<Found, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| {
+        Failure::input(format!("cannot read the scene {}: {error}", path.display()))
+    })?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let line = error.as_bytes()[..error.utf8_error().valid_up_to()]
+            .iter()
+            .filter(|&&b| b == b'\n')
+            .count()
+            + 1;
+        let message = format!(
+            "the scene {} is not UTF-8 text: see line {line}",
+            path.display()
+        );
+        Failure::input(message).with_help("a scene is a TOML file, such as scene.toml")
+    })?;
+    let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    Ok(Found {
+        name: name_of(path),
+        display: path.display().to_string(),
+        text,
+        meshes: Meshes::Folder(folder),
+    })
+}
+
+/// `my/flag/scene.toml` is called flag, `my/flag.toml` too.
+fn name_of(path: &Path) -> String {
+    let stem = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    if stem != "scene" {
+        return stem;
+    }
+    let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+    // `.` and `..` have no name of their own.
+    let folder = folder.canonicalize().unwrap_or(folder);
+    folder
+        .file_name()
+        .map_or(stem, |name| name.to_string_lossy().into_owned())
+}
+
+impl MeshSource for Meshes {
+    fn read(&self, file: &str, options: SurfaceOptions) -> Result<Surface, UnreadableMesh> {
+        let raw = match self {
+            Self::Folder(folder) => read_mesh(&folder.join(file)).map_err(unreadable)?,
+            Self::Shipped(shipped) => shipped_mesh(shipped, file)?,
+        };
+        raw.into_surface(options).map_err(unreadable)
+    }
+}
+
+fn shipped_mesh(shipped: &Shipped, file: &str) -> Result<RawMesh, UnreadableMesh> {
+    let Some((_, bytes)) = shipped.meshes.iter().find(|(name, _)| *name == file) else {
+        // A mesh of the user's for a shipped scene: relative to where the program is run.
+        return read_mesh(Path::new(file)).map_err(|error| {
+            let help = format!(
+                "the mesh files of the shipped '{}' apart, files are relative to where you are",
+                shipped.name
+            );
+            UnreadableMesh {
+                help: Some(help),
+                ..unreadable(error)
+            }
+        });
+    };
+    let path = Path::new(file);
+    let broken = |message: String| UnreadableMesh {
+        message,
+        help: None,
+    };
+    let format = MeshFormat::detect(bytes, path)
+        .ok_or_else(|| broken(format!("{file} is of no known format")))?;
+    let mesh = format
+        .parse(bytes)
+        .map_err(|error| broken(format!("{file}: {error}")))?;
+    Ok(RawMesh {
+        path: path.to_owned(),
+        ..mesh
+    })
+}
+
+fn unreadable(error: ReadError) -> UnreadableMesh {
+    let help = match &error {
+        ReadError::Io { .. } => Some("file names are relative to the scene's folder"),
+        ReadError::Mesh {
+            source: MeshError::InconsistentOrientation { .. },
+            ..
+        } => Some("repair_orientation = true in this mesh reverses such triangles"),
+        _ => None,
+    };
+    UnreadableMesh {
+        message: error.to_string(),
+        help: help.map(ToOwned::to_owned),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shipped_scene_and_variant_is_sound() {
+        for shipped in SHIPPED {
+            let found = find(shipped.name).unwrap();
+            for variant in ["default", "tiny"] {
+                let overrides: Vec<String> = match (variant, shipped.name) {
+                    ("tiny", "sphere-drape") => vec!["resolution=tiny".into()],
+                    ("tiny", "drape-n") => vec!["n=35".into()],
+                    _ => vec![],
+                };
+                let file = SceneFile::parse(shipped.name, &found.text, &overrides).unwrap();
+                let scene = Scene::build(&file, &found.meshes).unwrap();
+                assert!(
+                    scene.warnings.is_empty(),
+                    "{}: {:?}",
+                    shipped.name,
+                    scene.warnings
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_result_is_named_after_the_scene_or_its_folder() {
+        assert_eq!(name_of(Path::new("no/such/flag/scene.toml")), "flag");
+        assert_eq!(name_of(Path::new("flag.toml")), "flag");
+    }
+}
