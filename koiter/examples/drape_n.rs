@@ -47,7 +47,10 @@ fn main() {
         constraints: vec![],
         gravity: Vec3::new(0.0, 0.0, -9.81),
         gravity_scale: None,
-        contact: ContactOptions { d_hat: Some(1e-3), ..Default::default() },
+        contact: ContactOptions {
+            d_hat: Some(1e-3),
+            ..Default::default()
+        },
         solver: SolverOptions::default(),
         integrator: IntegratorKind::ImplicitEuler,
     };
@@ -71,9 +74,16 @@ fn main() {
             report.contacts,
             report.min_gap,
             report.kappa,
-            if report.converged { "" } else { "NOT CONVERGED" },
+            if report.converged {
+                ""
+            } else {
+                "NOT CONVERGED"
+            },
             report.diagnosis.as_deref().unwrap_or("")
         );
     }
-    println!("{iterations} iterations, {:.1} s: {totals:.2?}", start.elapsed().as_secs_f64());
+    println!(
+        "{iterations} iterations, {:.1} s: {totals:.2?}",
+        start.elapsed().as_secs_f64()
+    );
 }

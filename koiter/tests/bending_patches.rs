@@ -30,14 +30,23 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 fn points(value: &Value) -> Vec<Vec3> {
-    numbers(value).chunks_exact(3).map(Vec3::from_column_slice).collect()
+    numbers(value)
+        .chunks_exact(3)
+        .map(Vec3::from_column_slice)
+        .collect()
 }
 
 /// The largest difference of entries, relative to the largest reference entry.
 fn difference(found: &[f64], reference: &[f64]) -> f64 {
     assert_eq!(found.len(), reference.len());
-    let scale = reference.iter().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
-    found.iter().zip(reference).fold(0.0f64, |m, (a, b)| m.max((a - b).abs())) / scale
+    let scale = reference
+        .iter()
+        .fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
+    found
+        .iter()
+        .zip(reference)
+        .fold(0.0f64, |m, (a, b)| m.max((a - b).abs()))
+        / scale
 }
 
 struct Patch {
@@ -53,10 +62,15 @@ struct Patch {
 impl Patch {
     fn new(data: &Value) -> Self {
         let positions = points(&data["positions"]);
-        let faces: Vec<[u32; 3]> =
-            numbers(&data["faces"]).chunks_exact(3).map(|f| [f[0], f[1], f[2]].map(|v| v as u32)).collect();
+        let faces: Vec<[u32; 3]> = numbers(&data["faces"])
+            .chunks_exact(3)
+            .map(|f| [f[0], f[1], f[2]].map(|v| v as u32))
+            .collect();
         let mesh = TriMesh::new(positions.len(), faces).unwrap();
-        let rest = Surface { mesh: mesh.clone(), positions: points(&data["rest_positions"]) };
+        let rest = Surface {
+            mesh: mesh.clone(),
+            positions: points(&data["rest_positions"]),
+        };
         let mut layout = DofLayout::new();
         layout.push_nodes(mesh.num_vertices(), 3, true);
         let angles = layout.push_nodes(mesh.num_edges(), 1, true);
@@ -85,14 +99,22 @@ impl Patch {
     fn edge_order(&self) -> Vec<usize> {
         let edges = numbers(&self.data["edges"]);
         let ours = |e: &[f64]| {
-            self.surface.mesh.edges().iter().position(|uv| *uv == [e[0] as u32, e[1] as u32]).unwrap()
+            self.surface
+                .mesh
+                .edges()
+                .iter()
+                .position(|uv| *uv == [e[0] as u32, e[1] as u32])
+                .unwrap()
         };
         edges.chunks_exact(2).map(ours).collect()
     }
 
     /// Derivatives or values by angles in the order of the data.
     fn by_angles(&self, q: &[f64]) -> Vec<f64> {
-        self.edge_order().into_iter().map(|e| q[self.angles.0 as usize + e]).collect()
+        self.edge_order()
+            .into_iter()
+            .map(|e| q[self.angles.0 as usize + e])
+            .collect()
     }
 
     fn gradient(&self, energy: &dyn Energy, q: &[f64]) -> Vec<f64> {
@@ -102,10 +124,14 @@ impl Patch {
     }
 
     fn director_bending<P: AngleProfile>(&self, rest_forms: Vec<Vector3<f64>>) -> Bending<P> {
-        let [h, e, nu] = ["thickness", "youngs_modulus", "poissons_ratio"].map(|k| self.data[k].as_f64().unwrap());
+        let [h, e, nu] = ["thickness", "youngs_modulus", "poissons_ratio"]
+            .map(|k| self.data[k].as_f64().unwrap());
         let stencils = bending_stencils(&self.surface.mesh, Dof(0), self.angles);
         let material = StVenantKirchhoff::new(e, nu);
-        Assembled::new(MidEdgeBending::new(stencils, self.frames.clone(), rest_forms, h, material), &self.layout)
+        Assembled::new(
+            MidEdgeBending::new(stencils, self.frames.clone(), rest_forms, h, material),
+            &self.layout,
+        )
     }
 
     fn flat_forms(&self) -> Vec<Vector3<f64>> {
@@ -114,7 +140,8 @@ impl Patch {
 
     fn minimise<P: AngleProfile + 'static>(&self, bending: &mut Bending<P>, q: &mut [f64]) {
         let angles = (self.angles, self.surface.mesh.num_edges());
-        relax_directors(bending, &self.layout, angles, q).unwrap_or_else(|e| panic!("{}: {e}", self.name));
+        relax_directors(bending, &self.layout, angles, q)
+            .unwrap_or_else(|e| panic!("{}: {e}", self.name));
     }
 
     /// The rest second forms that the data's `rest_q` stand for.
@@ -136,12 +163,22 @@ impl Patch {
         let mut bending = self.director_bending::<P>(self.rest_forms(model));
         let mut q = self.q(&self.surface.positions, &numbers(&self.data["edge_angles"]));
         let energy = model["energy"].as_f64().unwrap();
-        assert!((bending.value(&q) - energy).abs() < ROUND_OFF * energy, "{name}: {} {energy}", bending.value(&q));
+        assert!(
+            (bending.value(&q) - energy).abs() < ROUND_OFF * energy,
+            "{name}: {} {energy}",
+            bending.value(&q)
+        );
         let gradient = self.gradient(&bending, &q);
         let by_positions = numbers(&model["gradient_by_positions"]);
         let error = difference(&gradient[..by_positions.len()], &by_positions);
-        assert!(error < ROUND_OFF, "{name}: gradient by positions {error:.1e}");
-        let error = difference(&self.by_angles(&gradient), &numbers(&model["gradient_by_angles"]));
+        assert!(
+            error < ROUND_OFF,
+            "{name}: gradient by positions {error:.1e}"
+        );
+        let error = difference(
+            &self.by_angles(&gradient),
+            &numbers(&model["gradient_by_angles"]),
+        );
         assert!(error < ROUND_OFF, "{name}: gradient by angles {error:.1e}");
         if let Some(minimum) = model["minimum"].as_f64() {
             q[self.angles.0 as usize..].fill(0.0);
@@ -149,7 +186,10 @@ impl Patch {
             let error = (bending.value(&q) - minimum).abs() / minimum;
             assert!(error < DIRECTOR_TOLERANCE, "{name}: minimum {error:.1e}");
             let error = difference(&self.by_angles(&q), &numbers(&model["minimum_angles"]));
-            assert!(error < DIRECTOR_TOLERANCE, "{name}: directors at the minimum {error:.1e}");
+            assert!(
+                error < DIRECTOR_TOLERANCE,
+                "{name}: directors at the minimum {error:.1e}"
+            );
         }
     }
 
@@ -159,14 +199,26 @@ impl Patch {
         let mut q = self.q(&self.rest.positions, &[]);
         self.minimise(&mut at_rest, &mut q);
         let error = difference(&self.by_angles(&q), &numbers(&model["rest_angles"]));
-        assert!(error < DIRECTOR_TOLERANCE, "{} {key}: rest directors {error:.1e}", self.name);
+        assert!(
+            error < DIRECTOR_TOLERANCE,
+            "{} {key}: rest directors {error:.1e}",
+            self.name
+        );
         let found = (0..self.rest.mesh.num_faces()).flat_map(|f| {
             let form = at_rest.local().second_form(f, &at_rest.gather(f, &q));
             [form.x, form.y, form.z]
         });
-        let expected: Vec<f64> = self.rest_forms(model).iter().flat_map(|f| [f.x, f.y, f.z]).collect();
+        let expected: Vec<f64> = self
+            .rest_forms(model)
+            .iter()
+            .flat_map(|f| [f.x, f.y, f.z])
+            .collect();
         let error = difference(&found.collect::<Vec<_>>(), &expected);
-        assert!(error < DIRECTOR_TOLERANCE, "{} {key}: rest second forms {error:.1e}", self.name);
+        assert!(
+            error < DIRECTOR_TOLERANCE,
+            "{} {key}: rest second forms {error:.1e}",
+            self.name
+        );
     }
 }
 
@@ -184,11 +236,16 @@ fn hinge_angles_are_those_of_the_reference() {
         let angles = patch.edge_order().into_iter().map(|e| {
             let edge = EdgeId(e as u32);
             let [u, v] = mesh.edges()[e].map(|v| patch.surface.positions[v as usize]);
-            let [Some(c), Some(d)] = [0, 1].map(|side| mesh.opposite_vertex(edge, side)) else { return 0.0 };
+            let [Some(c), Some(d)] = [0, 1].map(|side| mesh.opposite_vertex(edge, side)) else {
+                return 0.0;
+            };
             let [c, d] = [c, d].map(|v| patch.surface.positions[v.0 as usize]);
             hinge_angle(&Wing::new(&u, &v, &c), &Wing::new(&v, &u, &d))
         });
-        let error = difference(&angles.collect::<Vec<_>>(), &numbers(&patch.data["hinge_angles"]));
+        let error = difference(
+            &angles.collect::<Vec<_>>(),
+            &numbers(&patch.data["hinge_angles"]),
+        );
         assert!(error < ROUND_OFF, "{}: {error:.1e}", patch.name);
     }
 }
@@ -196,7 +253,8 @@ fn hinge_angles_are_those_of_the_reference() {
 #[test]
 fn hinge_energies_and_gradients_are_those_of_the_reference() {
     for patch in patches() {
-        let [h, e, nu] = ["thickness", "youngs_modulus", "poissons_ratio"].map(|k| patch.data[k].as_f64().unwrap());
+        let [h, e, nu] = ["thickness", "youngs_modulus", "poissons_ratio"]
+            .map(|k| patch.data[k].as_f64().unwrap());
         let rigidity = e * h.powi(3) / (12.0 * (1.0 - nu * nu));
         let curved = patch.data["rest"] == "curved";
         let hinge = DiscreteShellsHinge::new(&patch.rest, Dof(0), &patch.frames, curved, rigidity);
@@ -204,7 +262,12 @@ fn hinge_energies_and_gradients_are_those_of_the_reference() {
         let q = patch.q(&patch.surface.positions, &[]);
         let model = &patch.data["models"]["DS(theta)"];
         let energy = model["energy"].as_f64().unwrap();
-        assert!((hinge.value(&q) - energy).abs() < ROUND_OFF * energy, "{}: {}", patch.name, hinge.value(&q));
+        assert!(
+            (hinge.value(&q) - energy).abs() < ROUND_OFF * energy,
+            "{}: {}",
+            patch.name,
+            hinge.value(&q)
+        );
         let expected = numbers(&model["gradient_by_positions"]);
         let error = difference(&patch.gradient(&hinge, &q)[..expected.len()], &expected);
         assert!(error < ROUND_OFF, "{}: gradient {error:.1e}", patch.name);
@@ -218,17 +281,24 @@ fn dcs_energies_and_gradients_are_those_of_the_reference() {
 
 #[test]
 fn dso_energies_gradients_and_minima_are_those_of_the_reference() {
-    patches().iter().for_each(|p| p.check_model::<Identity>("DSO"));
+    patches()
+        .iter()
+        .for_each(|p| p.check_model::<Identity>("DSO"));
 }
 
 #[test]
 fn bac_energies_gradients_and_minima_are_those_of_the_reference() {
-    patches().iter().for_each(|p| p.check_model::<Tangent>("BAC"));
+    patches()
+        .iter()
+        .for_each(|p| p.check_model::<Tangent>("BAC"));
 }
 
 #[test]
 fn rest_directors_of_curved_shapes_are_those_of_the_reference() {
-    let curved: Vec<Patch> = patches().into_iter().filter(|p| p.data["rest"] == "curved").collect();
+    let curved: Vec<Patch> = patches()
+        .into_iter()
+        .filter(|p| p.data["rest"] == "curved")
+        .collect();
     assert_eq!(curved.len(), 3);
     for patch in &curved {
         // The energy of DCS is not convex in the angles: on a closed octahedron, whose edges turn by more than 60°, it has

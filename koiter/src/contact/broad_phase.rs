@@ -51,7 +51,9 @@ impl Aabb {
     /// Whether two boxes share a point.
     #[inline]
     pub fn overlaps(&self, other: &Self) -> bool {
-        (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+        // Without short circuits: most tests of a traversal are mispredicted otherwise.
+        let axis = |k: usize| (self.low[k] <= other.high[k]) & (other.low[k] <= self.high[k]);
+        axis(0) & axis(1) & axis(2)
     }
 }
 
@@ -139,24 +141,31 @@ impl BoxTree {
 
     /// Calls `found` with every primitive whose box overlaps `query`, in the order of the leaves.
     #[inline]
-    pub fn overlapping(&self, query: &Aabb, mut found: impl FnMut(u32)) {
-        if self.leaves.is_empty() {
+    pub fn overlapping(&self, query: &Aabb, found: impl FnMut(u32)) {
+        self.overlapping_from(0, query, found);
+    }
+
+    /// The same among the leaves from number `first` on.
+    #[inline]
+    fn overlapping_from(&self, first: usize, query: &Aabb, mut found: impl FnMut(u32)) {
+        if first >= self.leaves.len() {
             return;
         }
-        let mut stack = [0usize; 64];
-        stack[0] = 1;
+        // Each entry is a node and the number of levels below it.
+        let mut stack = [(1usize, self.width.trailing_zeros()); 64];
         let mut depth = 1;
         while depth > 0 {
             depth -= 1;
-            let node = stack[depth];
-            if !self.boxes[node].overlaps(query) {
+            let (node, levels) = stack[depth];
+            let past_last_leaf = ((node + 1) << levels) - self.width;
+            if past_last_leaf <= first || !self.boxes[node].overlaps(query) {
                 continue;
             }
-            if node >= self.width {
+            if levels == 0 {
                 found(self.leaves[node - self.width]);
             } else {
-                stack[depth] = 2 * node + 1;
-                stack[depth + 1] = 2 * node;
+                stack[depth] = (2 * node + 1, levels - 1);
+                stack[depth + 1] = (2 * node, levels - 1);
                 depth += 2;
             }
         }
@@ -168,21 +177,43 @@ impl BoxTree {
         queries: &[Aabb],
         keep: impl Fn(u32, u32) -> bool + Sync + Send,
     ) -> Vec<[u32; 2]> {
-        let chunks = queries.len().div_ceil(QUERY_CHUNK);
-        parallel_map(chunks, |chunk| {
-            let range = chunk * QUERY_CHUNK..((chunk + 1) * QUERY_CHUNK).min(queries.len());
-            let mut found = Vec::new();
-            for query in range {
-                self.overlapping(&queries[query], |leaf| {
-                    if keep(query as u32, leaf) {
-                        found.push([query as u32, leaf]);
-                    }
-                });
-            }
-            found
+        chunked(queries.len(), |query, found| {
+            self.overlapping(&queries[query], |leaf| {
+                if keep(query as u32, leaf) {
+                    found.push([query as u32, leaf]);
+                }
+            });
         })
-        .concat()
     }
+
+    /// All pairs of different primitives of the tree with overlapping boxes for which `keep` holds, each once with the
+    /// smaller index first, in the order of the leaves.
+    pub fn self_pairs(&self, keep: impl Fn(u32, u32) -> bool + Sync + Send) -> Vec<[u32; 2]> {
+        chunked(self.leaves.len(), |leaf, found| {
+            let own = self.leaves[leaf];
+            self.overlapping_from(leaf + 1, &self.boxes[self.width + leaf], |other| {
+                let (a, b) = (own.min(other), own.max(other));
+                if keep(a, b) {
+                    found.push([a, b]);
+                }
+            });
+        })
+    }
+}
+
+/// What `search` finds for `0..count`, in order, by tasks of [`QUERY_CHUNK`].
+fn chunked(
+    count: usize,
+    search: impl Fn(usize, &mut Vec<[u32; 2]>) + Sync + Send,
+) -> Vec<[u32; 2]> {
+    parallel_map(count.div_ceil(QUERY_CHUNK), |chunk| {
+        let mut found = Vec::new();
+        for query in chunk * QUERY_CHUNK..((chunk + 1) * QUERY_CHUNK).min(count) {
+            search(query, &mut found);
+        }
+        found
+    })
+    .concat()
 }
 
 /// Queries a task takes at a time.
@@ -218,6 +249,14 @@ mod tests {
                 );
             }
             assert_eq!(found, expected);
+            let mut pairs = tree.self_pairs(|_, _| true);
+            pairs.sort_unstable();
+            let mut expected = Vec::new();
+            for i in 0..count {
+                let later = (i + 1..count).filter(|&j| a[i].overlaps(&a[j]));
+                expected.extend(later.map(|j| [i as u32, j as u32]));
+            }
+            assert_eq!(pairs, expected);
         }
     }
 

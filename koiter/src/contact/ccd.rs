@@ -14,10 +14,22 @@ const SLACK: f64 = 0.1;
 /// needed where it matters, and the fallback only costs a Newton iteration.
 const MAX_ADVANCES: usize = 1000;
 
+/// How far two primitives may move towards each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    /// Fraction of the motion that keeps a tenth of the gap; 0 if they touch at the start.
+    pub fraction: f64,
+    /// Lower bound of their distance over the whole motion [m].
+    pub nearest: f64,
+}
+
 /// The largest fraction in `[0, 1]` of the motion `x + t dx` that keeps a tenth of the gap beyond `touching_distance`.
-///
-/// Returns 0 if the primitives touch at the start.
-pub fn additive_ccd(pair: &Pair, x: &[Vec3; 4], dx: &[Vec3; 4], touching_distance: f64) -> f64 {
+pub fn additive_ccd(
+    pair: &Pair,
+    x: &[Vec3; 4],
+    dx: &[Vec3; 4],
+    touching_distance: f64,
+) -> Approach {
     let mean = (dx[0] + dx[1] + dx[2] + dx[3]) * 0.25;
     let relative = dx.map(|d| d - mean);
     let norms = relative.map(|d| d.norm());
@@ -25,13 +37,15 @@ pub fn additive_ccd(pair: &Pair, x: &[Vec3; 4], dx: &[Vec3; 4], touching_distanc
         PairKind::VertexFace => norms[0] + norms[1].max(norms[2]).max(norms[3]),
         PairKind::EdgeEdge => norms[0].max(norms[1]) + norms[2].max(norms[3]),
     };
-    if !(reach > 0.0) {
-        return if reach == 0.0 { 1.0 } else { 0.0 };
-    }
     let gap = |x: &[Vec3; 4]| pair.closest(x).distance_squared.sqrt() - touching_distance;
     let mut current = gap(x);
-    if !(current > 0.0) {
-        return 0.0;
+    let nearest = touching_distance + current - reach;
+    // Written so that what is not a number counts as touching.
+    if !(current > 0.0 && reach < f64::INFINITY) {
+        return Approach {
+            fraction: 0.0,
+            nearest: f64::NEG_INFINITY,
+        };
     }
     let kept = SLACK * current;
     let mut fraction = 0.0;
@@ -39,7 +53,10 @@ pub fn additive_ccd(pair: &Pair, x: &[Vec3; 4], dx: &[Vec3; 4], touching_distanc
         let advance = (1.0 - SLACK) * current / reach;
         let next = fraction + advance;
         if next >= 1.0 {
-            return 1.0;
+            return Approach {
+                fraction: 1.0,
+                nearest,
+            };
         }
         let moved = std::array::from_fn(|i| x[i] + relative[i] * next);
         current = gap(&moved);
@@ -49,7 +66,7 @@ pub fn additive_ccd(pair: &Pair, x: &[Vec3; 4], dx: &[Vec3; 4], touching_distanc
         }
         fraction = next;
     }
-    fraction
+    Approach { fraction, nearest }
 }
 
 #[cfg(test)]
@@ -78,9 +95,9 @@ mod tests {
             Vec3::zeros(),
             Vec3::zeros(),
         ];
-        let t = additive_ccd(&pair, &x, &dx, 0.0);
+        let t = additive_ccd(&pair, &x, &dx, 0.0).fraction;
         assert!(t < 0.25 && t > 0.8 * 0.25, "{t}");
-        let thick = additive_ccd(&pair, &x, &dx, 0.5);
+        let thick = additive_ccd(&pair, &x, &dx, 0.5).fraction;
         assert!(thick < 0.125 && thick > 0.8 * 0.125, "{thick}");
     }
 
@@ -102,7 +119,7 @@ mod tests {
             v(5.0, 0.0, 0.0),
             v(5.0, 0.0, 0.0),
         ];
-        assert_eq!(additive_ccd(&pair, &x, &dx, 0.0), 1.0);
+        assert_eq!(additive_ccd(&pair, &x, &dx, 0.0).fraction, 1.0);
     }
 
     #[test]
@@ -133,9 +150,13 @@ mod tests {
             if distance(0.0) <= 0.05 {
                 continue;
             }
-            let t = additive_ccd(&pair, &x, &dx, 0.05);
+            let Approach {
+                fraction: t,
+                nearest,
+            } = additive_ccd(&pair, &x, &dx, 0.05);
             for k in 0..=200 {
                 assert!(distance(t * f64::from(k) / 200.0) > 0.05, "trial {trial}");
+                assert!(distance(f64::from(k) / 200.0) >= nearest, "trial {trial}");
             }
         }
     }
@@ -158,6 +179,6 @@ mod tests {
             Vec3::zeros(),
             Vec3::zeros(),
         ];
-        assert_eq!(additive_ccd(&pair, &x, &dx, 0.0), 0.0);
+        assert_eq!(additive_ccd(&pair, &x, &dx, 0.0).fraction, 0.0);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::barrier::LogBarrier;
 use super::broad_phase::{Aabb, BoxTree};
-use super::ccd::additive_ccd;
+use super::ccd::{Approach, additive_ccd};
 use super::collision_mesh::CollisionMesh;
 use super::friction::{Friction, FrictionContact};
 use super::pair::{Pair, PairKind, derivatives, mollify};
@@ -225,10 +225,9 @@ impl Contact {
         if vertex_faces.len() > limit {
             return false;
         }
-        let edge_edges = self.edge_tree.tree.pairs(&edge_boxes, |a, b| {
+        let edge_edges = self.edge_tree.tree.self_pairs(|a, b| {
             let (first, second) = (&mesh.edges[a as usize], &mesh.edges[b as usize]);
-            a < b
-                && !second.contains(&first[0])
+            !second.contains(&first[0])
                 && !second.contains(&first[1])
                 && !both_obstacles(first[0], second[0])
         });
@@ -690,18 +689,28 @@ impl Energy for Contact {
             dx.iter_mut().for_each(|d| *d *= 0.5);
             self.limiter = Some(Limiter::Reach);
         }
-        let bounds = parallel_map(self.candidates.len(), |i| {
+        let approaches = parallel_map(self.candidates.len(), |i| {
             let pair = &self.candidates[i];
             let at = |of: &[Vec3]| pair.vertices.map(|v| of[v as usize]);
             additive_ccd(pair, &at(&x), &at(&dx), self.touching_distance(pair))
         });
         let mut bound = 1.0;
-        for (pair, &fraction) in self.candidates.iter().zip(&bounds) {
-            if fraction < bound {
-                bound = fraction;
+        for (pair, approach) in self.candidates.iter().zip(&approaches) {
+            if approach.fraction < bound {
+                bound = approach.fraction;
                 self.limiter = Some(Limiter::Pair(*pair));
             }
         }
+        // Most pairs of overlapping boxes are never near: the line search need not look at them again.
+        let candidates = std::mem::take(&mut self.candidates);
+        let near = |(pair, approach): (Pair, &Approach)| {
+            (approach.nearest < self.touching_distance(&pair) + self.d_hat).then_some(pair)
+        };
+        self.candidates = candidates
+            .into_iter()
+            .zip(&approaches)
+            .filter_map(near)
+            .collect();
         let (by_plane, limiter) = self.plane_bound(&x, &dx, q, direction);
         // The planes' own motion is not scaled with the reach: their bound is for the whole direction.
         if by_plane < bound {

@@ -18,7 +18,7 @@ mod plane;
 pub use audit::{Intersection, intersections};
 pub use barrier::LogBarrier;
 pub use broad_phase::{Aabb, BoxTree};
-pub use ccd::additive_ccd;
+pub use ccd::{Approach, additive_ccd};
 pub use collision_mesh::{CollisionBody, CollisionMesh};
 pub use energy::{Contact, ContactStatistics, StartError, TouchingPair};
 pub use friction::Friction;

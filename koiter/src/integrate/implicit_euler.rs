@@ -26,16 +26,44 @@ impl Integrator for ImplicitEuler {
         dt: f64,
     ) -> Result<StepReport, StepError> {
         let step = state.step + 1;
-        let prediction = state.q.iter().zip(&state.velocities).map(|(x, v)| x + dt * v).collect();
-        let mut inertia = Inertia { masses: system.masses.clone(), prediction, dt };
+        let prediction = state
+            .q
+            .iter()
+            .zip(&state.velocities)
+            .map(|(x, v)| x + dt * v)
+            .collect();
+        let mut inertia = Inertia {
+            masses: system.masses.clone(),
+            prediction,
+            dt,
+        };
         let mut q = state.q.clone();
         let tolerance = self.velocity_tolerance * dt;
         let newton = system
-            .solve(&mut q, Some(&mut inertia), (&state.q, dt), prescribed, tolerance)
+            .solve(
+                &mut q,
+                Some(&mut inertia),
+                (&state.q, dt),
+                prescribed,
+                tolerance,
+            )
             .map_err(|error| (step, error))?;
-        let velocities = q.iter().zip(&state.q).map(|(new, old)| (new - old) / dt).collect();
-        let report = StepReport { dt, residual: newton.last_step / dt, ..Default::default() };
-        let next = State { q, velocities, time: state.time + dt, step };
+        let velocities = q
+            .iter()
+            .zip(&state.q)
+            .map(|(new, old)| (new - old) / dt)
+            .collect();
+        let report = StepReport {
+            dt,
+            residual: newton.last_step / dt,
+            ..Default::default()
+        };
+        let next = State {
+            q,
+            velocities,
+            time: state.time + dt,
+            step,
+        };
         system.finish(state, next, newton, report)
     }
 }

@@ -24,9 +24,8 @@ impl OffsetSurfaces {
         let x = shell.face_corners(face, q);
         let half = 0.5 * shell.thickness;
         let directors = shell.directors(face, q);
-        let middle: [Vec3; 3] = std::array::from_fn(|c| {
-            (x[(c + 1) % 3] + x[(c + 2) % 3]) * 0.5 + directors[c] * half
-        });
+        let middle: [Vec3; 3] =
+            std::array::from_fn(|c| (x[(c + 1) % 3] + x[(c + 2) % 3]) * 0.5 + directors[c] * half);
         std::array::from_fn(|c| middle[(c + 1) % 3] + middle[(c + 2) % 3] - middle[c])
     }
 }
@@ -56,7 +55,10 @@ impl ConfigurationSpace for OffsetSurfaces {
             }
             let after: Vec<f64> = q.iter().zip(dq).map(|(x, d)| x + d).collect();
             let by_face = parallel_map(shell.mesh.num_faces(), |face| {
-                let (old, new) = (Self::corners(shell, face, q), Self::corners(shell, face, &after));
+                let (old, new) = (
+                    Self::corners(shell, face, q),
+                    Self::corners(shell, face, &after),
+                );
                 (0..3).map(|c| (new[c] - old[c]).norm()).fold(0.0, larger)
             });
             largest = by_face.into_iter().fold(largest, larger);
@@ -69,7 +71,11 @@ impl ConfigurationSpace for OffsetSurfaces {
             let vertices = shell.vertex_dofs();
             if vertices.contains(&dof) {
                 let (vertex, axis) = ((dof - vertices.start) / 3, (dof - vertices.start) % 3);
-                return format!("coordinate {} of vertex {vertex} of '{}'", ["x", "y", "z"][axis], shell.name);
+                return format!(
+                    "coordinate {} of vertex {vertex} of '{}'",
+                    ["x", "y", "z"][axis],
+                    shell.name
+                );
             }
             if let Some(first) = shell.first_edge {
                 let edges = first.0 as usize..first.0 as usize + shell.mesh.num_edges();

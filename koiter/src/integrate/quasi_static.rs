@@ -20,11 +20,26 @@ impl Integrator for QuasiStatic {
         let step = state.step + 1;
         let mut q = state.q.clone();
         let newton = system
-            .solve(&mut q, None, (&state.q, dt), prescribed, self.displacement_tolerance)
+            .solve(
+                &mut q,
+                None,
+                (&state.q, dt),
+                prescribed,
+                self.displacement_tolerance,
+            )
             .map_err(|error| (step, error))?;
         let velocities = vec![0.0; q.len()];
-        let report = StepReport { dt, residual: newton.last_step, ..Default::default() };
-        let next = State { q, velocities, time: state.time + dt, step };
+        let report = StepReport {
+            dt,
+            residual: newton.last_step,
+            ..Default::default()
+        };
+        let next = State {
+            q,
+            velocities,
+            time: state.time + dt,
+            step,
+        };
         system.finish(state, next, newton, report)
     }
 }

@@ -9,7 +9,8 @@ struct Angles;
 
 impl ConfigurationSpace for Angles {
     fn displacement(&self, _q: &[f64], dq: &[f64]) -> f64 {
-        dq.iter().fold(0.0, |m, d| if d.abs() <= m { m } else { d.abs() })
+        dq.iter()
+            .fold(0.0, |m, d| if d.abs() <= m { m } else { d.abs() })
     }
     fn describe(&self, dof: usize) -> String {
         format!("director {dof}")
@@ -41,13 +42,24 @@ pub fn relax_directors(
     };
     // Projected, the quadratic energy of DSO took 12 to 37 iterations on small patches: with positions held, elements
     // are projected for motions that do not happen. Exact, it takes two.
-    let options = NewtonOptions { tolerance: TOLERANCE, max_iterations: 100, hessian: HessianChoice::ExactWhereConvex };
-    let report = minimize(&mut problem, &options, &mut LinearWorkspace::default(), q)
-        .map_err(|error| RestError::Directors { reason: error.to_string() })?;
+    let options = NewtonOptions {
+        tolerance: TOLERANCE,
+        max_iterations: 100,
+        hessian: HessianChoice::ExactWhereConvex,
+    };
+    let report =
+        minimize(&mut problem, &options, &mut LinearWorkspace::default(), q).map_err(|error| {
+            RestError::Directors {
+                reason: error.to_string(),
+            }
+        })?;
     if report.converged {
         Ok(())
     } else {
-        let reason = format!("the last step was {:.1e} rad after {} iterations", report.last_step, report.iterations);
+        let reason = format!(
+            "the last step was {:.1e} rad after {} iterations",
+            report.last_step, report.iterations
+        );
         Err(RestError::Directors { reason })
     }
 }

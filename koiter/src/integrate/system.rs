@@ -13,7 +13,9 @@ use crate::energy::bending::{BendingStencil, DirectorShape, curvatures, director
 use crate::energy::{Gravity, Inertia};
 use crate::mesh::TriMesh;
 use crate::rest::RestFrame;
-use crate::solve::{HessianChoice, LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError, minimize};
+use crate::solve::{
+    HessianChoice, LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError, minimize,
+};
 
 /// Positions, edge angles and velocities at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,7 +96,11 @@ impl ShellPart {
     /// Second fundamental form of a face in its rest frame, components `11, 22, 12` [1/m].
     pub fn second_form(&self, face: usize, q: &[f64]) -> Vector3<f64> {
         let curvature = Vector3::from(curvatures(&self.stencils[face], self.director_shape, q));
-        Vector3::from(self.frames[face].second_form_matrix().map(|row| Vector3::from(row).dot(&curvature)))
+        Vector3::from(
+            self.frames[face]
+                .second_form_matrix()
+                .map(|row| Vector3::from(row).dot(&curvature)),
+        )
     }
 
     /// Mean curvature of a face [1/m]: half the trace of the second fundamental form in the rest metric.
@@ -168,22 +174,32 @@ impl System {
             is_fixed: &prescribed.is_fixed,
             target: &prescribed.target,
         };
-        let options = NewtonOptions { tolerance, max_iterations: self.max_iterations, hessian: HessianChoice::Projected };
+        let options = NewtonOptions {
+            tolerance,
+            max_iterations: self.max_iterations,
+            hessian: HessianChoice::Projected,
+        };
         minimize(&mut problem, &options, &mut self.workspace, q)
     }
 
     /// Energies by name at a state, with the kinetic energy.
     pub fn energies(&self, state: &State) -> Vec<(&'static str, f64)> {
         let mut energies: Vec<(&'static str, f64)> = Vec::new();
-        let mut add = |name: &'static str, value: f64| match energies.iter_mut().find(|(n, _)| *n == name) {
-            Some((_, total)) => *total += value,
-            None => energies.push((name, value)),
-        };
+        let mut add =
+            |name: &'static str, value: f64| match energies.iter_mut().find(|(n, _)| *n == name) {
+                Some((_, total)) => *total += value,
+                None => energies.push((name, value)),
+            };
         for energy in &self.elastic {
             add(energy.name(), energy.value(&state.q));
         }
         add("gravity", self.gravity.value(&state.q));
-        let kinetic = self.masses.iter().zip(&state.velocities).map(|(m, v)| 0.5 * m * v * v).sum();
+        let kinetic = self
+            .masses
+            .iter()
+            .zip(&state.velocities)
+            .map(|(m, v)| 0.5 * m * v * v)
+            .sum();
         add("kinetic", kinetic);
         if let Some(contact) = &self.contact {
             add("contact", contact.value(&state.q));
@@ -204,8 +220,15 @@ impl System {
         if let Some(contact) = &mut self.contact {
             let touching = contact.touching(&next.q);
             if !touching.is_empty() {
-                let worst: Vec<&str> = touching.iter().take(3).map(|t| t.description.as_str()).collect();
-                return Err(StepError::Intersection { step: next.step, details: worst.join("; ") });
+                let worst: Vec<&str> = touching
+                    .iter()
+                    .take(3)
+                    .map(|t| t.description.as_str())
+                    .collect();
+                return Err(StepError::Intersection {
+                    step: next.step,
+                    details: worst.join("; "),
+                });
             }
             contact.refresh(&next.q);
             let statistics = contact.statistics();
@@ -235,17 +258,27 @@ impl System {
             newton.iterations, newton.last_step
         );
         if newton.remaining > 0.0 {
-            text += &format!("; prescribed motions are short of their targets by {:.2e} m", newton.remaining);
+            text += &format!(
+                "; prescribed motions are short of their targets by {:.2e} m",
+                newton.remaining
+            );
         }
         if let Some(limiter) = &newton.limiter {
-            text += &format!("; the step was cut to {:.1e} by {limiter}", newton.last_fraction);
+            text += &format!(
+                "; the step was cut to {:.1e} by {limiter}",
+                newton.last_fraction
+            );
         }
         let elastic = self.elastic.iter().map(|e| e.as_ref());
         let contact = self.contact.iter().map(|c| c as &dyn Energy);
         for energy in elastic.chain(contact) {
             if let Some(worst) = energy.worst_element(q) {
                 let norm = worst.gradient_norm;
-                text += &format!("; largest force of '{}': {norm:.2e} N at {}", energy.name(), worst.description);
+                text += &format!(
+                    "; largest force of '{}': {norm:.2e} N at {}",
+                    energy.name(),
+                    worst.description
+                );
             }
         }
         text + ". Try a smaller time step, a finer mesh where it folds, or more iterations"
@@ -255,8 +288,15 @@ impl System {
 impl From<(usize, SolveError)> for StepError {
     fn from((step, error): (usize, SolveError)) -> Self {
         match error {
-            SolveError::NotFinite { energy, element } => Self::NotFinite { step, energy, element },
-            other => Self::LinearSolve { step, reason: other.to_string() },
+            SolveError::NotFinite { energy, element } => Self::NotFinite {
+                step,
+                energy,
+                element,
+            },
+            other => Self::LinearSolve {
+                step,
+                reason: other.to_string(),
+            },
         }
     }
 }

@@ -56,12 +56,19 @@ pub(super) struct Assembly {
 /// Builds energies, masses and contact, and refuses a start that touches.
 pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     let mut layout = DofLayout::new();
-    let vertices: Vec<Dof> =
-        model.shells.iter().map(|s| layout.push_nodes(s.surface.mesh.num_vertices(), 3, true)).collect();
+    let vertices: Vec<Dof> = model
+        .shells
+        .iter()
+        .map(|s| layout.push_nodes(s.surface.mesh.num_vertices(), 3, true))
+        .collect();
     let edges: Vec<Option<Dof>> = model
         .shells
         .iter()
-        .map(|s| director_shape(s.bending).1.then(|| layout.push_nodes(s.surface.mesh.num_edges(), 1, true)))
+        .map(|s| {
+            director_shape(s.bending)
+                .1
+                .then(|| layout.push_nodes(s.surface.mesh.num_edges(), 1, true))
+        })
         .collect();
     let obstacles: Vec<(Dof, Vec<Vec3>)> = model
         .obstacles
@@ -78,31 +85,51 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         write_points(&mut velocities, *first, &shell.velocities);
     }
     for (obstacle, (first, points)) in model.obstacles.iter().zip(&obstacles) {
-        let moved: Vec<Vec3> = points.iter().map(|x| obstacle.motion.apply(*x, 0.0)).collect();
+        let moved: Vec<Vec3> = points
+            .iter()
+            .map(|x| obstacle.motion.apply(*x, 0.0))
+            .collect();
         write_points(&mut q, *first, &moved);
     }
     let mut elastic: Vec<Box<dyn Energy>> = Vec::new();
     let mut masses = vec![0.0; layout.num_solved_dofs()];
     let mut parts = Vec::new();
     for ((shell, &first_vertex), &first_edge) in model.shells.iter().zip(&vertices).zip(&edges) {
-        let fail = |error| BuildError::Rest { shell: shell.name.clone(), error };
+        let fail = |error| BuildError::Rest {
+            shell: shell.name.clone(),
+            error,
+        };
         let mut part = shell_part(shell, first_vertex, first_edge).map_err(fail)?;
         add_vertex_masses(&part, shell.density, &mut masses);
         let material = StVenantKirchhoff::new(shell.youngs_modulus, shell.poissons_ratio);
-        let membrane =
-            Membrane::new(&part.mesh, first_vertex, part.frames.clone(), shell.thickness, material);
+        let membrane = Membrane::new(
+            &part.mesh,
+            first_vertex,
+            part.frames.clone(),
+            shell.thickness,
+            material,
+        );
         elastic.push(Box::new(Assembled::new(membrane, &layout)));
         let bending = match shell.bending {
-            BendingModel::Bac => director_bending::<Tangent>(shell, &mut part, &layout, &mut q, &mut masses),
-            BendingModel::Dcs => director_bending::<Sine>(shell, &mut part, &layout, &mut q, &mut masses),
-            BendingModel::Dso => director_bending::<Identity>(shell, &mut part, &layout, &mut q, &mut masses),
+            BendingModel::Bac => {
+                director_bending::<Tangent>(shell, &mut part, &layout, &mut q, &mut masses)
+            }
+            BendingModel::Dcs => {
+                director_bending::<Sine>(shell, &mut part, &layout, &mut q, &mut masses)
+            }
+            BendingModel::Dso => {
+                director_bending::<Identity>(shell, &mut part, &layout, &mut q, &mut masses)
+            }
             BendingModel::DsTheta => Ok(Some(hinge_bending(shell, &part, &layout))),
             BendingModel::None => Ok(None),
         };
         elastic.extend(bending.map_err(fail)?);
         parts.push(part);
     }
-    let gravity = Gravity { masses: vertex_masses(&parts, &masses), acceleration: model.gravity };
+    let gravity = Gravity {
+        masses: vertex_masses(&parts, &masses),
+        acceleration: model.gravity,
+    };
     let mut contact = build_contact(model, &vertices, &obstacles, &layout);
     if let Some(contact) = &mut contact {
         contact.check_start(&q)?;
@@ -118,7 +145,12 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         workspace: LinearWorkspace::default(),
         max_iterations: model.solver.max_iterations,
     };
-    Ok(Assembly { system, q, velocities, obstacles })
+    Ok(Assembly {
+        system,
+        q,
+        velocities,
+        obstacles,
+    })
 }
 
 /// How directors are shown, and whether the model has them as unknowns.
@@ -137,7 +169,11 @@ fn write_points(q: &mut [f64], first: Dof, points: &[Vec3]) {
     }
 }
 
-fn shell_part(shell: &Shell, first_vertex: Dof, first_edge: Option<Dof>) -> Result<ShellPart, RestError> {
+fn shell_part(
+    shell: &Shell,
+    first_vertex: Dof,
+    first_edge: Option<Dof>,
+) -> Result<ShellPart, RestError> {
     let rest = rest_surface(shell);
     Ok(ShellPart {
         name: shell.name.clone(),
@@ -148,12 +184,19 @@ fn shell_part(shell: &Shell, first_vertex: Dof, first_edge: Option<Dof>) -> Resu
         rest_forms: vec![Vector3::zeros(); rest.mesh.num_faces()],
         thickness: shell.thickness,
         director_shape: director_shape(shell.bending).0,
-        stencils: bending_stencils(&shell.surface.mesh, first_vertex, first_edge.unwrap_or(Dof(0))),
+        stencils: bending_stencils(
+            &shell.surface.mesh,
+            first_vertex,
+            first_edge.unwrap_or(Dof(0)),
+        ),
     })
 }
 
 fn rest_surface(shell: &Shell) -> Surface {
-    Surface { mesh: shell.surface.mesh.clone(), positions: shell.rest_positions.clone() }
+    Surface {
+        mesh: shell.surface.mesh.clone(),
+        positions: shell.rest_positions.clone(),
+    }
 }
 
 /// Every vertex takes a third of the mass of its rest faces.
@@ -162,20 +205,32 @@ fn add_vertex_masses(part: &ShellPart, density: f64, masses: &mut [f64]) {
         let third = density * part.thickness * frame.area / 3.0;
         for &v in face {
             let start = part.first_vertex.0 as usize + 3 * v as usize;
-            masses[start..start + 3].iter_mut().for_each(|m| *m += third);
+            masses[start..start + 3]
+                .iter_mut()
+                .for_each(|m| *m += third);
         }
     }
 }
 
 fn vertex_masses(parts: &[ShellPart], masses: &[f64]) -> Vec<(Dof, f64)> {
-    parts.iter().flat_map(|p| p.vertex_dofs().step_by(3)).map(|start| (Dof(start as u32), masses[start])).collect()
+    parts
+        .iter()
+        .flat_map(|p| p.vertex_dofs().step_by(3))
+        .map(|start| (Dof(start as u32), masses[start]))
+        .collect()
 }
 
 fn hinge_bending(shell: &Shell, part: &ShellPart, layout: &DofLayout) -> Box<dyn Energy> {
     let nu = shell.poissons_ratio;
     let rigidity = shell.youngs_modulus * shell.thickness.powi(3) / (12.0 * (1.0 - nu * nu));
     let rest = rest_surface(shell);
-    let hinge = DiscreteShellsHinge::new(&rest, part.first_vertex, &part.frames, shell.rest_curved, rigidity);
+    let hinge = DiscreteShellsHinge::new(
+        &rest,
+        part.first_vertex,
+        &part.frames,
+        shell.rest_curved,
+        rigidity,
+    );
     Box::new(Assembled::new(hinge, layout))
 }
 
@@ -192,7 +247,10 @@ fn director_bending<P: AngleProfile + 'static>(
     let num_faces = part.mesh.num_faces();
     let bending = |part: &ShellPart, forms| {
         let (stencils, frames) = (part.stencils.clone(), part.frames.clone());
-        Assembled::new(MidEdgeBending::<P, _>::new(stencils, frames, forms, shell.thickness, material), layout)
+        Assembled::new(
+            MidEdgeBending::<P, _>::new(stencils, frames, forms, shell.thickness, material),
+            layout,
+        )
     };
     let first_edge = part.first_edge.expect("director models have edge unknowns");
     let angles = (first_edge, part.mesh.num_edges());
@@ -202,8 +260,9 @@ fn director_bending<P: AngleProfile + 'static>(
     let mut at_rest = bending(part, flat);
     relax_directors(&mut at_rest, layout, angles, &mut rest_q)?;
     if shell.rest_curved {
-        part.rest_forms =
-            (0..num_faces).map(|f| at_rest.local().second_form(f, &at_rest.gather(f, &rest_q))).collect();
+        part.rest_forms = (0..num_faces)
+            .map(|f| at_rest.local().second_form(f, &at_rest.gather(f, &rest_q)))
+            .collect();
     }
     add_director_inertia(shell, part, &at_rest, &rest_q, first_edge, masses);
     let mut energy = bending(part, part.rest_forms.clone());
@@ -227,7 +286,9 @@ fn add_director_inertia<P: AngleProfile>(
 ) {
     let scale = shell.density * shell.thickness.powi(3) / 12.0;
     for face in 0..part.mesh.num_faces() {
-        let shares = bending.local().director_inertia(face, &bending.gather(face, rest_q));
+        let shares = bending
+            .local()
+            .director_inertia(face, &bending.gather(face, rest_q));
         for (edge, share) in part.mesh.face_edges()[face].iter().zip(shares) {
             masses[(first_edge.0 + edge.0) as usize] += scale * share;
         }
@@ -253,8 +314,12 @@ fn build_contact(
     if !model.contact.enabled || model.shells.is_empty() {
         return None;
     }
-    let mut bodies: Vec<CollisionBody> =
-        model.shells.iter().zip(vertices).map(|(shell, first)| shell_body(shell, *first)).collect();
+    let mut bodies: Vec<CollisionBody> = model
+        .shells
+        .iter()
+        .zip(vertices)
+        .map(|(shell, first)| shell_body(shell, *first))
+        .collect();
     let mut planes = Vec::new();
     for (obstacle, (first, points)) in model.obstacles.iter().zip(obstacles) {
         let (edges, faces, offset) = match &obstacle.shape {
@@ -269,7 +334,11 @@ fn build_contact(
             }
             ObstacleShape::Sphere { radius, .. } => (vec![], vec![], *radius),
             ObstacleShape::Capsule { radius, .. } => (vec![[0, 1]], vec![], *radius),
-            ObstacleShape::Mesh(surface) => (surface.mesh.edges().to_vec(), surface.mesh.faces().to_vec(), 0.0),
+            ObstacleShape::Mesh(surface) => (
+                surface.mesh.edges().to_vec(),
+                surface.mesh.faces().to_vec(),
+                0.0,
+            ),
         };
         bodies.push(CollisionBody {
             name: obstacle.name.clone(),
@@ -284,8 +353,17 @@ fn build_contact(
         });
     }
     let d_hat = model.contact.d_hat.unwrap_or_else(|| default_d_hat(model));
-    let kappa = model.contact.kappa.unwrap_or_else(|| default_kappa(model, d_hat));
-    Some(Contact::new(CollisionMesh::new(bodies), planes, layout.clone(), d_hat, kappa))
+    let kappa = model
+        .contact
+        .kappa
+        .unwrap_or_else(|| default_kappa(model, d_hat));
+    Some(Contact::new(
+        CollisionMesh::new(bodies),
+        planes,
+        layout.clone(),
+        d_hat,
+        kappa,
+    ))
 }
 
 fn shell_body(shell: &Shell, first_dof: Dof) -> CollisionBody {
@@ -303,7 +381,11 @@ fn shell_body(shell: &Shell, first_dof: Dof) -> CollisionBody {
 }
 
 fn default_d_hat(model: &Model) -> f64 {
-    let by_edge = model.shells.iter().map(|s| s.surface.mean_edge_length()).fold(f64::INFINITY, f64::min);
+    let by_edge = model
+        .shells
+        .iter()
+        .map(|s| s.surface.mean_edge_length())
+        .fold(f64::INFINITY, f64::min);
     let extent = |s: &Shell| {
         let (low, high) = s.surface.bounding_box();
         (high - low).norm()
@@ -315,6 +397,10 @@ fn default_d_hat(model: &Model) -> f64 {
 fn default_kappa(model: &Model, d_hat: f64) -> f64 {
     // Scenes without gravity are given the weight they would have on Earth: it only sets a scale.
     let gravity = model.gravity.norm().max(9.81);
-    let weight = model.shells.iter().map(|s| s.density * s.thickness * gravity).fold(0.0, f64::max);
+    let weight = model
+        .shells
+        .iter()
+        .map(|s| s.density * s.thickness * gravity)
+        .fold(0.0, f64::max);
     BARRIER_PRESSURE_BY_WEIGHT * weight * d_hat
 }

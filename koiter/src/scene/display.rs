@@ -41,20 +41,37 @@ pub(super) fn tessellate(model: &Model) -> Vec<PartTopology> {
             (high - low).norm()
         })
         .fold(1e-3, f64::max);
-    shells.chain(model.obstacles.iter().map(|obstacle| obstacle_part(obstacle, extent))).collect()
+    shells
+        .chain(
+            model
+                .obstacles
+                .iter()
+                .map(|obstacle| obstacle_part(obstacle, extent)),
+        )
+        .collect()
 }
 
 fn obstacle_part(obstacle: &Obstacle, extent: f64) -> PartTopology {
     let (positions, faces) = match &obstacle.shape {
         ObstacleShape::Plane { point, normal } => {
-            let across = if normal.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };
+            let across = if normal.x.abs() < 0.9 {
+                Vec3::x()
+            } else {
+                Vec3::y()
+            };
             let u = normal.cross(&across).normalize() * (0.5 * PLANE_EXTENT * extent);
             let v = normal.cross(&u);
-            (vec![point - u - v, point + u - v, point + u + v, point - u + v], vec![[0, 1, 2], [0, 2, 3]])
+            (
+                vec![point - u - v, point + u - v, point + u + v, point - u + v],
+                vec![[0, 1, 2], [0, 2, 3]],
+            )
         }
         ObstacleShape::Sphere { center, radius } => {
             let ball = generate::icosphere(*radius, 4).expect("a sphere has a positive radius");
-            (ball.positions.iter().map(|x| x + center).collect(), ball.mesh.faces().to_vec())
+            (
+                ball.positions.iter().map(|x| x + center).collect(),
+                ball.mesh.faces().to_vec(),
+            )
         }
         ObstacleShape::Capsule { ends, radius } => capsule(ends, *radius),
         ObstacleShape::Mesh(surface) => (surface.positions.clone(), surface.mesh.faces().to_vec()),
@@ -74,5 +91,8 @@ fn capsule(ends: &[Vec3; 2], radius: f64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let ball = generate::icosphere(radius, 4).expect("a capsule has a positive radius");
     let axis = ends[1] - ends[0];
     let place = |x: &Vec3| x + if x.dot(&axis) < 0.0 { ends[0] } else { ends[1] };
-    (ball.positions.iter().map(place).collect(), ball.mesh.faces().to_vec())
+    (
+        ball.positions.iter().map(place).collect(),
+        ball.mesh.faces().to_vec(),
+    )
 }

@@ -5,7 +5,9 @@ use super::display::{PartTopology, tessellate};
 use super::model::{IntegratorKind, Model};
 use crate::Vec3;
 use crate::assembly::{Dof, Energy};
-use crate::integrate::{ImplicitEuler, Integrator, Prescribed, QuasiStatic, State, StepError, StepReport, System};
+use crate::integrate::{
+    ImplicitEuler, Integrator, Prescribed, QuasiStatic, State, StepError, StepReport, System,
+};
 
 /// A model with its state, advanced step by step.
 pub struct Simulation {
@@ -43,20 +45,39 @@ impl Simulation {
     /// # Errors
     /// A rest state that cannot be used; a start that touches or intersects.
     pub fn new(model: Model) -> Result<Self, BuildError> {
-        let Assembly { system, q, velocities, obstacles } = assemble(&model)?;
+        let Assembly {
+            system,
+            q,
+            velocities,
+            obstacles,
+        } = assemble(&model)?;
         let integrator: Box<dyn Integrator> = match model.integrator {
-            IntegratorKind::ImplicitEuler => {
-                Box::new(ImplicitEuler { velocity_tolerance: model.solver.velocity_tolerance })
-            }
-            IntegratorKind::QuasiStatic => {
-                Box::new(QuasiStatic { displacement_tolerance: model.solver.displacement_tolerance })
-            }
+            IntegratorKind::ImplicitEuler => Box::new(ImplicitEuler {
+                velocity_tolerance: model.solver.velocity_tolerance,
+            }),
+            IntegratorKind::QuasiStatic => Box::new(QuasiStatic {
+                displacement_tolerance: model.solver.displacement_tolerance,
+            }),
         };
         let parts = tessellate(&model);
-        let state = State { q, velocities, time: 0.0, step: 0 };
+        let state = State {
+            q,
+            velocities,
+            time: 0.0,
+            step: 0,
+        };
         let start_angles = state.q.clone();
         let momentum_rates = vec![0.0; system.masses.len()];
-        Ok(Self { model, system, state, integrator, obstacles, start_angles, parts, momentum_rates })
+        Ok(Self {
+            model,
+            system,
+            state,
+            integrator,
+            obstacles,
+            start_angles,
+            parts,
+            momentum_rates,
+        })
     }
 
     /// Advances by one step of `dt` [s] (statics: to the equilibrium at the schedules' values after `dt`).
@@ -64,16 +85,37 @@ impl Simulation {
     /// # Errors
     /// See [`StepError`]; the state is then that before the step.
     pub fn step(&mut self, dt: f64) -> Result<StepReport, StepError> {
+        // Inside the pool, so that its many short loops start without waking other threads.
+        #[cfg(feature = "parallel")]
+        return rayon::scope(|_| self.step_in_pool(dt));
+        #[cfg(not(feature = "parallel"))]
+        self.step_in_pool(dt)
+    }
+
+    fn step_in_pool(&mut self, dt: f64) -> Result<StepReport, StepError> {
         let time = self.state.time + dt;
         if let Some(scale) = &self.model.gravity_scale {
             self.system.gravity.acceleration = self.model.gravity * scale.at(time);
         }
         let prescribed = self.prescribed_at(time);
         let before = self.state.velocities.clone();
-        let report = self.integrator.step(&mut self.system, &mut self.state, &prescribed, dt)?;
+        let report = self
+            .integrator
+            .step(&mut self.system, &mut self.state, &prescribed, dt)?;
         if self.model.integrator == IntegratorKind::ImplicitEuler {
-            let changes = self.state.velocities.iter().zip(&before).map(|(new, old)| (new - old) / dt);
-            self.momentum_rates = self.system.masses.iter().zip(changes).map(|(m, a)| m * a).collect();
+            let changes = self
+                .state
+                .velocities
+                .iter()
+                .zip(&before)
+                .map(|(new, old)| (new - old) / dt);
+            self.momentum_rates = self
+                .system
+                .masses
+                .iter()
+                .zip(changes)
+                .map(|(m, a)| m * a)
+                .collect();
         }
         Ok(report)
     }
@@ -95,7 +137,9 @@ impl Simulation {
                     target[start + axis] = x[axis];
                 }
             }
-            let Some(first_edge) = part.first_edge.filter(|_| constraint.clamp_directors) else { continue };
+            let Some(first_edge) = part.first_edge.filter(|_| constraint.clamp_directors) else {
+                continue;
+            };
             for (edge, [u, v]) in shell.surface.mesh.edges().iter().enumerate() {
                 if held[*u as usize] && held[*v as usize] {
                     let dof = first_edge.0 as usize + edge;
@@ -107,7 +151,8 @@ impl Simulation {
         for (obstacle, (first, points)) in self.model.obstacles.iter().zip(&self.obstacles) {
             for (i, x) in points.iter().enumerate() {
                 let start = first.0 as usize + 3 * i;
-                target[start..start + 3].copy_from_slice(obstacle.motion.apply(*x, time).as_slice());
+                target[start..start + 3]
+                    .copy_from_slice(obstacle.motion.apply(*x, time).as_slice());
             }
         }
         Prescribed { is_fixed, target }
@@ -150,7 +195,9 @@ impl Simulation {
 
     fn shell_points(&self, shell: usize, values: &[f64]) -> Vec<Vec3> {
         let part = &self.system.space.shells[shell];
-        (0..part.mesh.num_vertices()).map(|v| part.position(v, values)).collect()
+        (0..part.mesh.num_vertices())
+            .map(|v| part.position(v, values))
+            .collect()
     }
 
     /// Edge angles of a shell [rad]; empty for models without directors.
@@ -170,7 +217,9 @@ impl Simulation {
         for energy in &self.system.elastic {
             energy.add_gradient(&self.state.q, &mut gradient);
         }
-        self.system.gravity.add_gradient(&self.state.q, &mut gradient);
+        self.system
+            .gravity
+            .add_gradient(&self.state.q, &mut gradient);
         if let Some(contact) = &self.system.contact {
             contact.add_gradient(&self.state.q, &mut gradient);
         }
@@ -201,11 +250,20 @@ impl Simulation {
 
     /// Positions of the vertices of all parts [m].
     pub fn display_positions(&self) -> Vec<Vec3> {
-        let mut positions: Vec<Vec3> =
-            (0..self.model.shells.len()).flat_map(|shell| self.shell_positions(shell)).collect();
-        let obstacles = self.model.obstacles.iter().zip(&self.parts[self.model.shells.len()..]);
+        let mut positions: Vec<Vec3> = (0..self.model.shells.len())
+            .flat_map(|shell| self.shell_positions(shell))
+            .collect();
+        let obstacles = self
+            .model
+            .obstacles
+            .iter()
+            .zip(&self.parts[self.model.shells.len()..]);
         for (obstacle, part) in obstacles {
-            positions.extend(part.start_positions.iter().map(|x| obstacle.motion.apply(*x, self.state.time)));
+            positions.extend(
+                part.start_positions
+                    .iter()
+                    .map(|x| obstacle.motion.apply(*x, self.state.time)),
+            );
         }
         positions
     }
@@ -214,12 +272,16 @@ impl Simulation {
     /// [J/m²], mean curvature [1/m].
     pub fn face_fields(&self) -> Vec<(&'static str, Vec<f32>)> {
         let shells = &self.system.space.shells;
-        let on_obstacles: usize = self.parts[shells.len()..].iter().map(|p| p.faces.len()).sum();
+        let on_obstacles: usize = self.parts[shells.len()..]
+            .iter()
+            .map(|p| p.faces.len())
+            .sum();
         let q = &self.state.q;
         let gather = |value: &dyn Fn(usize, usize) -> f64| -> Vec<f32> {
-            let on_shells = shells.iter().enumerate().flat_map(|(s, part)| {
-                (0..part.mesh.num_faces()).map(move |f| (s, f))
-            });
+            let on_shells = shells
+                .iter()
+                .enumerate()
+                .flat_map(|(s, part)| (0..part.mesh.num_faces()).map(move |f| (s, f)));
             on_shells
                 .map(|(s, f)| value(s, f) as f32)
                 .chain(std::iter::repeat_n(0.0, on_obstacles))
@@ -227,8 +289,14 @@ impl Simulation {
         };
         vec![
             ("strain", gather(&|s, f| shells[s].largest_strain(f, q))),
-            ("bending_energy_density", gather(&|s, f| self.bending_density(s, f))),
-            ("mean_curvature", gather(&|s, f| shells[s].mean_curvature(f, q))),
+            (
+                "bending_energy_density",
+                gather(&|s, f| self.bending_density(s, f)),
+            ),
+            (
+                "mean_curvature",
+                gather(&|s, f| shells[s].mean_curvature(f, q)),
+            ),
         ]
     }
 
@@ -236,7 +304,8 @@ impl Simulation {
     fn bending_density(&self, shell: usize, face: usize) -> f64 {
         let (part, spec) = (&self.system.space.shells[shell], &self.model.shells[shell]);
         let form = part.second_form(face, &self.state.q) - part.rest_forms[face];
-        let material = crate::material::StVenantKirchhoff::new(spec.youngs_modulus, spec.poissons_ratio);
+        let material =
+            crate::material::StVenantKirchhoff::new(spec.youngs_modulus, spec.poissons_ratio);
         let density = crate::material::Material::response(&material, face, &form).density;
         spec.thickness.powi(3) / 12.0 * density
     }
@@ -247,14 +316,18 @@ impl Simulation {
             self.model.shells.iter().map(|s| f(&s.surface.mesh)).sum()
         };
         let dofs = self.system.layout.num_solved_dofs();
-        let (faces, directors) = (sum(&|m| m.num_faces()), self.system.layout.num_solved_nodes());
+        let (faces, directors) = (
+            sum(&|m| m.num_faces()),
+            self.system.layout.num_solved_nodes(),
+        );
         let has_directors = directors > sum(&|m| m.num_vertices());
         // Entries a face, both triangles, counted on large Delaunay meshes: 166 with directors, 58 with hinges.
         let hessian_nonzeros = faces * if has_directors { 166 } else { 58 };
         // Factor entries grow like n log n: about 30 an unknown at 10⁴ unknowns, 8 more for every doubling.
         let growth = 30.0 + 8.0 * (dofs.max(10_000) as f64 / 1e4).log2();
         let factor = 1.3 * growth * dofs as f64 * 8.0;
-        let mut energies: Vec<&'static str> = self.energies().into_iter().map(|(name, _)| name).collect();
+        let mut energies: Vec<&'static str> =
+            self.energies().into_iter().map(|(name, _)| name).collect();
         energies.dedup();
         SystemStats {
             vertices: sum(&|m| m.num_vertices()),

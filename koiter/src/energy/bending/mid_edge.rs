@@ -86,10 +86,18 @@ pub enum DirectorShape {
 /// Tilt and own wing of edge `c` of a face.
 fn tilt_and_wing(stencil: &BendingStencil, c: usize, has_angle: bool, q: &[f64]) -> (f64, Wing) {
     let point = |dof: Dof| Vec3::from_column_slice(&q[dof.0 as usize..dof.0 as usize + 3]);
-    let (a, b) = (point(stencil.corners[(c + 1) % 3]), point(stencil.corners[(c + 2) % 3]));
+    let (a, b) = (
+        point(stencil.corners[(c + 1) % 3]),
+        point(stencil.corners[(c + 2) % 3]),
+    );
     let wing = Wing::new(&a, &b, &point(stencil.corners[c]));
-    let theta = stencil.across[c].map_or(0.0, |d| hinge_angle(&wing, &Wing::new(&b, &a, &point(d))));
-    let angle = if has_angle { q[stencil.angles[c].0 as usize] } else { 0.0 };
+    let theta =
+        stencil.across[c].map_or(0.0, |d| hinge_angle(&wing, &Wing::new(&b, &a, &point(d))));
+    let angle = if has_angle {
+        q[stencil.angles[c].0 as usize]
+    } else {
+        0.0
+    };
     (0.5 * theta + stencil.signs[c] * angle, wing)
 }
 
@@ -109,7 +117,12 @@ pub fn directors(stencil: &BendingStencil, shape: DirectorShape, q: &[f64]) -> [
 pub fn curvatures(stencil: &BendingStencil, shape: DirectorShape, q: &[f64]) -> [f64; 3] {
     std::array::from_fn(|c| {
         let (tilt, wing) = tilt_and_wing(stencil, c, shape != DirectorShape::Bisector, q);
-        2.0 * wing.height * if shape == DirectorShape::Tangent { tilt.tan() } else { tilt.sin() }
+        2.0 * wing.height
+            * if shape == DirectorShape::Tangent {
+                tilt.tan()
+            } else {
+                tilt.sin()
+            }
     })
 }
 

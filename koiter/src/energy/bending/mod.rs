@@ -6,5 +6,7 @@ mod profile;
 mod quadratic_form;
 
 pub use hinge::DiscreteShellsHinge;
-pub use mid_edge::{BendingStencil, DirectorShape, MidEdgeBending, bending_stencils, curvatures, directors};
+pub use mid_edge::{
+    BendingStencil, DirectorShape, MidEdgeBending, bending_stencils, curvatures, directors,
+};
 pub use profile::{AngleProfile, Identity, Sine, Tangent};

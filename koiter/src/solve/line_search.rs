@@ -1,0 +1,115 @@
+//! How far to go along a Newton step.
+//!
+//! First as far as contact allows ([`Energy::max_step`]), then half of it while an energy is not defined there, then half
+//! while the sum of energies does not decrease enough (Armijo). Where progress is slow the search also looks beyond the
+//! Newton step: clamped curvature makes steps too short by a constant factor.
+
+use std::time::Instant;
+
+use super::newton::{NewtonReport, Problem};
+use crate::assembly::Energy;
+
+/// Halvings before a line search gives up: 2⁻⁶⁰ of a step is below round-off of any position.
+const MAX_HALVINGS: usize = 60;
+
+/// Armijo's fraction of the predicted decrease.
+const SUFFICIENT_DECREASE: f64 = 1e-4;
+
+/// What to search along.
+pub(super) struct SearchLine<'a> {
+    /// The Newton step.
+    pub(super) direction: &'a [f64],
+    /// Its product with the gradient.
+    pub(super) slope: f64,
+    /// The furthest to go, in Newton steps; at least 1.
+    pub(super) reach: f64,
+    /// Whether prescribed motions are under way: the sum of energies may then grow.
+    pub(super) moving: bool,
+}
+
+/// Sum of the energies, and of their absolute values.
+fn total(energies: &[&mut dyn Energy], q: &[f64]) -> (f64, f64) {
+    energies
+        .iter()
+        .map(|e| e.value(q))
+        .fold((0.0, 0.0), |(sum, size), v| (sum + v, size + v.abs()))
+}
+
+/// Moves `q` along the line and returns the number of Newton steps taken: 0 if no fraction will do.
+pub(super) fn line_search(
+    problem: &mut Problem<'_>,
+    q: &mut [f64],
+    line: &SearchLine<'_>,
+    report: &mut NewtonReport,
+) -> f64 {
+    let start = Instant::now();
+    report.limiter = None;
+    let whole: Vec<f64> = line.direction.iter().map(|d| d * line.reach).collect();
+    let mut bound: f64 = 1.0;
+    for energy in &mut problem.energies {
+        let allowed = energy.max_step(q, &whole);
+        if allowed < bound {
+            bound = allowed;
+            report.limiter = energy.step_limiter();
+        }
+    }
+    report.spend("collision detection", start);
+    let start = Instant::now();
+    let steps = search(problem, q, line, bound * line.reach, report);
+    report.spend("line search", start);
+    steps
+}
+
+fn search(
+    problem: &Problem<'_>,
+    q: &mut [f64],
+    line: &SearchLine<'_>,
+    longest: f64,
+    report: &mut NewtonReport,
+) -> f64 {
+    let (before, magnitude) = total(&problem.energies, q);
+    // Round-off of a sum of that magnitude: differences below it say nothing.
+    let noise = 1e-14 * magnitude;
+    let point = |steps: f64| {
+        let scaled: Vec<f64> = line.direction.iter().map(|d| d * steps).collect();
+        let mut out = vec![0.0; q.len()];
+        problem.space.retract(q, &scaled, &mut out);
+        out
+    };
+    let mut value_at = |trial: &[f64]| {
+        report.line_search_steps += 1;
+        match problem.energies.iter().find(|e| !e.is_admissible(trial)) {
+            Some(energy) => Err(energy.name()),
+            None => Ok(total(&problem.energies, trial).0),
+        }
+    };
+    let mut steps = longest.min(1.0);
+    for _ in 0..MAX_HALVINGS {
+        let trial = point(steps);
+        match value_at(&trial) {
+            Ok(value) if decreases(value, before + noise, steps, line) => {
+                let mut best = (steps, value, trial);
+                while 2.0 * best.0 <= longest {
+                    let further = point(2.0 * best.0);
+                    match value_at(&further) {
+                        Ok(value) if value < best.1 - noise => {
+                            best = (2.0 * best.0, value, further)
+                        }
+                        _ => break,
+                    }
+                }
+                q.copy_from_slice(&best.2);
+                return best.0;
+            }
+            Ok(_) => report.limiter = Some("the energy does not decrease further on".into()),
+            Err(energy) => report.limiter = Some(format!("{energy} is not defined further on")),
+        }
+        steps *= 0.5;
+    }
+    0.0
+}
+
+fn decreases(value: f64, before: f64, steps: f64, line: &SearchLine<'_>) -> bool {
+    value.is_finite()
+        && (line.moving || value <= before + SUFFICIENT_DECREASE * steps * line.slope.min(0.0))
+}
