@@ -103,7 +103,7 @@ impl<'a> Album<'a> {
         })
     }
 
-    /// Writes a picture of a frame.
+    /// Writes a picture of a frame; the camera frames it alone.
     pub(crate) fn picture(&self, frame: usize, path: &Path) -> Result<(), Failure> {
         self.draw(frame, Quality::Still)?
             .write_png(path)
@@ -195,8 +195,13 @@ impl<'a> Album<'a> {
         let caption = format!("t = {:.2} s", frame.time);
         let view = FrameView::new(&self.topology, frame, self.look.color.as_deref());
         let (width, height) = self.look.size;
+        // A film keeps its camera; a picture is framed for itself.
+        let bounds = match quality {
+            Quality::Still => view.bounds(),
+            Quality::Film => self.bounds,
+        };
         let camera = Camera::fit(
-            &self.bounds,
+            &bounds,
             self.look.camera,
             f64::from(width) / f64::from(height),
         );

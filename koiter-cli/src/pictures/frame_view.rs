@@ -49,8 +49,7 @@ impl<'a> FrameView<'a> {
     /// What the camera should frame: everything but the floor.
     pub(super) fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        for (part, positions) in self.shown() {
-            let _ = part;
+        for (_, positions) in self.shown() {
             positions
                 .iter()
                 .for_each(|&position| bounds.include(position));
