@@ -3,7 +3,8 @@
 use koiter::Vec3;
 use koiter::assembly::{Assembled, Dof, DofLayout, Energy};
 use koiter::energy::bending::{
-    AngleProfile, DirectorShape, Identity, MidEdgeBending, Sine, Tangent, bending_stencils, directors,
+    AngleProfile, DirectorShape, Identity, MidEdgeBending, Sine, Tangent, bending_stencils,
+    directors,
 };
 use koiter::geometry::{Wing, hinge_angle};
 use koiter::integrate::relax_directors;
@@ -21,16 +22,28 @@ fn hinge_angles(surface: &Surface) -> Vec<f64> {
         .filter_map(|e| {
             let [c, d] = [0, 1].map(|side| mesh.opposite_vertex(EdgeId(e), side));
             let [u, v] = mesh.edges()[e as usize].map(x);
-            Some(hinge_angle(&Wing::new(&u, &v, &x(c?.0)), &Wing::new(&v, &u, &x(d?.0))))
+            Some(hinge_angle(
+                &Wing::new(&u, &v, &x(c?.0)),
+                &Wing::new(&v, &u, &x(d?.0)),
+            ))
         })
         .collect()
 }
 
 /// Two faces over the edge 1–2, folded down by `drop`: face 0 traverses 1 → 2, face 1 traverses 2 → 1.
 fn fold(drop: f64) -> Surface {
-    let positions = [[0.4, 1.0, -drop], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.7, -0.8, -0.8 * drop]];
+    let positions = [
+        [0.4, 1.0, -drop],
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.7, -0.8, -0.8 * drop],
+    ];
     let positions: Vec<Vec3> = positions.iter().map(|p| Vec3::from(*p)).collect();
-    Surface::from_mesh(TriMesh::new(4, vec![[0, 1, 2], [3, 2, 1]]).unwrap(), positions).unwrap()
+    Surface::from_mesh(
+        TriMesh::new(4, vec![[0, 1, 2], [3, 2, 1]]).unwrap(),
+        positions,
+    )
+    .unwrap()
 }
 
 /// Positions, then zero edge angles.
@@ -38,7 +51,11 @@ fn with_angles(surface: &Surface) -> (DofLayout, Dof, Vec<f64>) {
     let mut layout = DofLayout::new();
     layout.push_nodes(surface.mesh.num_vertices(), 3, true);
     let angles = layout.push_nodes(surface.mesh.num_edges(), 1, true);
-    let mut q: Vec<f64> = surface.positions.iter().flat_map(|x| [x.x, x.y, x.z]).collect();
+    let mut q: Vec<f64> = surface
+        .positions
+        .iter()
+        .flat_map(|x| [x.x, x.y, x.z])
+        .collect();
     q.resize(layout.num_dofs(), 0.0);
     (layout, angles, q)
 }
@@ -71,8 +88,17 @@ fn hinge_angles_vanish_on_a_plane_and_are_positive_on_a_sphere() {
     // Exactly zero: all products of coordinates out of the plane are.
     assert!(hinge_angles(&sheet).iter().all(|theta| *theta == 0.0));
     let sphere = icosphere(2.0, 2).unwrap();
-    assert!(hinge_angles(&sphere).iter().all(|theta| *theta > 0.1 && *theta < 0.4));
-    let inside_out: Vec<_> = sphere.mesh.faces().iter().map(|f| [f[0], f[2], f[1]]).collect();
+    assert!(
+        hinge_angles(&sphere)
+            .iter()
+            .all(|theta| *theta > 0.1 && *theta < 0.4)
+    );
+    let inside_out: Vec<_> = sphere
+        .mesh
+        .faces()
+        .iter()
+        .map(|f| [f[0], f[2], f[1]])
+        .collect();
     let mesh = TriMesh::new(sphere.positions.len(), inside_out).unwrap();
     let inward = Surface::from_mesh(mesh, sphere.positions).unwrap();
     assert!(hinge_angles(&inward).iter().all(|theta| *theta < -0.1));
@@ -103,7 +129,10 @@ fn a_positive_edge_angle_turns_the_bisector_right_handedly_for_both_faces() {
         let expected = Rotation3::from_axis_angle(&axis, angle) * Vec3::z();
         for stencil in &stencils {
             let [director, ..] = directors(stencil, DirectorShape::Unit, &q);
-            assert!((director - expected).norm() < 1e-14, "{angle}: {director} {expected}");
+            assert!(
+                (director - expected).norm() < 1e-14,
+                "{angle}: {director} {expected}"
+            );
         }
     }
 }
@@ -115,7 +144,11 @@ fn the_bisector_of_a_boundary_edge_is_the_normal() {
     let stencils = bending_stencils(&surface.mesh, Dof(0), angles);
     let [x0, x1, x2] = surface.corners(0);
     let normal = (x1 - x0).cross(&(x2 - x0)).normalize();
-    for shape in [DirectorShape::Unit, DirectorShape::Tangent, DirectorShape::Bisector] {
+    for shape in [
+        DirectorShape::Unit,
+        DirectorShape::Tangent,
+        DirectorShape::Bisector,
+    ] {
         let of_face = directors(&stencils[0], shape, &q);
         assert!((of_face[1] - normal).norm() < 1e-14 && (of_face[2] - normal).norm() < 1e-14);
     }
@@ -139,7 +172,14 @@ fn the_tangent_director_is_the_unit_one_stretched_to_height_one_over_the_face() 
 /// rows, against 1/R; faces at the free ends and seams excluded by keeping the middle half.
 fn cylinder_error<P: AngleProfile + 'static>(cells: usize) -> f64 {
     let (radius, angle) = (2.0, 0.5);
-    let mut sheet = grid(radius * angle, 1.0, cells, cells, GridDiagonals::Alternating).unwrap();
+    let mut sheet = grid(
+        radius * angle,
+        1.0,
+        cells,
+        cells,
+        GridDiagonals::Alternating,
+    )
+    .unwrap();
     let inside: Vec<bool> = (0..sheet.mesh.num_faces())
         .map(|f| {
             let middle = sheet.corners(f).iter().sum::<Vec3>() / 3.0;
@@ -148,21 +188,42 @@ fn cylinder_error<P: AngleProfile + 'static>(cells: usize) -> f64 {
         .collect();
     // The sheet faces +z; rolled down at both ends its normals point away from the axis.
     for x in &mut sheet.positions {
-        *x = Vec3::new(radius * (x.x / radius).sin(), x.y, radius * (x.x / radius).cos() - radius);
+        *x = Vec3::new(
+            radius * (x.x / radius).sin(),
+            x.y,
+            radius * (x.x / radius).cos() - radius,
+        );
     }
     let (layout, angles, mut q) = with_angles(&sheet);
     let stencils = bending_stencils(&sheet.mesh, Dof(0), angles);
     let frames = rest_frames(&sheet).unwrap();
     let flat = vec![Vector3::zeros(); frames.len()];
-    let bending = MidEdgeBending::<P, _>::new(stencils, frames.clone(), flat, 1e-3, StVenantKirchhoff::new(1.0, 0.3));
+    let bending = MidEdgeBending::<P, _>::new(
+        stencils,
+        frames.clone(),
+        flat,
+        1e-3,
+        StVenantKirchhoff::new(1.0, 0.3),
+    );
     let mut bending = Assembled::new(bending, &layout);
     assert!(bending.value(&q) > 0.0);
-    relax_directors(&mut bending, &layout, (angles, sheet.mesh.num_edges()), &mut q).unwrap();
+    relax_directors(
+        &mut bending,
+        &layout,
+        (angles, sheet.mesh.num_edges()),
+        &mut q,
+    )
+    .unwrap();
     let errors = (0..frames.len()).filter(|f| inside[*f]).map(|f| {
         let form = bending.local().second_form(f, &bending.gather(f, &q));
         // Eigenvalues of a symmetric 2 × 2: 1/R around and 0 along.
-        let (mean, half) = (0.5 * (form.x + form.y), (0.25 * (form.x - form.y).powi(2) + form.z * form.z).sqrt());
-        ((mean + half) * radius - 1.0).abs().max(((mean - half) * radius).abs())
+        let (mean, half) = (
+            0.5 * (form.x + form.y),
+            (0.25 * (form.x - form.y).powi(2) + form.z * form.z).sqrt(),
+        );
+        ((mean + half) * radius - 1.0)
+            .abs()
+            .max(((mean - half) * radius).abs())
     });
     errors.fold(0.0, f64::max)
 }
