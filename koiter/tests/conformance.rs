@@ -4,7 +4,8 @@ use koiter::Vec3;
 use koiter::assembly::{Assembled, Dof, DofLayout, Energy, LocalEnergy, LocalHessian};
 use koiter::energy::Membrane;
 use koiter::energy::bending::{
-    AngleProfile, DiscreteShellsHinge, Identity, MidEdgeBending, Sine, Tangent, bending_stencils,
+    AngleProfile, ClampedEdge, DirectorClamp, DiscreteShellsHinge, Identity, MidEdgeBending, Sine,
+    Tangent, bending_stencils,
 };
 use koiter::material::StVenantKirchhoff;
 use koiter::mesh::{Surface, TriMesh};
@@ -195,6 +196,40 @@ fn the_membrane_conforms() {
     let (s, m) = (patch(1.0), material());
     let formula = |e: &Membrane<_>, f: usize, q: &_| e.formula(f, q, m.lame_alpha, m.lame_beta);
     check(membrane(&s), &s.layout, &s.q, formula, &claims(&s, true)).unwrap();
+}
+
+#[test]
+fn the_director_clamp_conforms() {
+    let s = patch(1.0);
+    let stencils = bending_stencils(&s.rest.mesh, Dof(0), s.edges);
+    let mut edges = Vec::new();
+    for (face, stencil) in stencils.iter().enumerate() {
+        for c in 0..3 {
+            let corners = s.rest.mesh.faces()[face];
+            let vertices = [corners[(c + 1) % 3], corners[(c + 2) % 3]];
+            let ends = vertices.map(|v| s.rest.positions[v as usize]);
+            let across_edge = (ends[1] - ends[0]).cross(&Vec3::new(0.3, 0.5, 1.0));
+            edges.push(ClampedEdge {
+                apex: stencil.corners[c],
+                across: stencil.across[c],
+                angle: stencil.angles[c],
+                sign: stencil.signs[c],
+                ends,
+                director: across_edge.cross(&(ends[1] - ends[0])).normalize(),
+                stiffness: 0.8,
+                vertices,
+            });
+        }
+    }
+    let clamp = DirectorClamp { edges };
+    check(
+        clamp,
+        &s.layout,
+        &s.q,
+        |e, i, q| e.formula(i, q),
+        &Claims::default(),
+    )
+    .unwrap();
 }
 
 /// A membrane with one wrong entry in its gradient or in its Hessian.

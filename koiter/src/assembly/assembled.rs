@@ -42,6 +42,11 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
         &self.local
     }
 
+    /// The local energy, to change its parameters; its elements and their nodes must stay.
+    pub fn local_mut(&mut self) -> &mut L {
+        &mut self.local
+    }
+
     /// The element's unknowns.
     pub fn gather(&self, stencil: usize, q: &[f64]) -> SVector<f64, N> {
         let mut out = SVector::<f64, N>::zeros();

@@ -7,9 +7,9 @@ use nalgebra::Vector3;
 use super::offset_surface::OffsetSurfaces;
 use super::report::{StepError, StepReport};
 use crate::Vec3;
-use crate::assembly::{Dof, DofLayout, Energy};
+use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::contact::{Contact, Friction};
-use crate::energy::bending::{BendingStencil, DirectorShape, curvatures, directors};
+use crate::energy::bending::{BendingStencil, DirectorClamp, DirectorShape, curvatures, directors};
 use crate::energy::{Gravity, Inertia};
 use crate::mesh::TriMesh;
 use crate::rest::RestFrame;
@@ -116,6 +116,8 @@ pub struct System {
     pub layout: DofLayout,
     /// Membrane and bending of every shell.
     pub elastic: Vec<Box<dyn Energy>>,
+    /// Clamped edges.
+    pub clamps: Assembled<DirectorClamp, 7, 3>,
     /// Gravity.
     pub gravity: Gravity,
     /// Lumped masses [kg] and rotational inertias [kg·m²] of the solved unknowns.
@@ -159,6 +161,7 @@ impl System {
         for energy in &mut self.elastic {
             energies.push(energy.as_mut());
         }
+        energies.push(&mut self.clamps);
         energies.push(&mut self.gravity);
         if let Some(inertia) = inertia {
             energies.push(inertia);

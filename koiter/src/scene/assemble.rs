@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::clamps::Clamps;
 use super::model::{BendingModel, Model, Obstacle, ObstacleShape, Shell};
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
@@ -51,6 +52,7 @@ pub(super) struct Assembly {
     pub(super) velocities: Vec<f64>,
     /// First unknown of each obstacle's points, and their positions at time 0.
     pub(super) obstacles: Vec<(Dof, Vec<Vec3>)>,
+    pub(super) clamps: Clamps,
 }
 
 /// Builds energies, masses and contact, and refuses a start that touches.
@@ -135,6 +137,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         elastic.extend(bending.map_err(fail)?);
         parts.push(part);
     }
+    let (clamps, clamped_edges) = Clamps::new(model, &parts, &q);
     let gravity = Gravity {
         masses: vertex_masses(&parts, &masses),
         acceleration: model.gravity,
@@ -144,6 +147,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         contact.check_start(&q)?;
     }
     let system = System {
+        clamps: Assembled::new(clamped_edges, &layout),
         layout,
         elastic,
         gravity,
@@ -159,6 +163,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         q,
         velocities,
         obstacles,
+        clamps,
     })
 }
 

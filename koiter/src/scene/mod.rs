@@ -5,6 +5,7 @@
 //! message, a dotted path, a place in the text and a help.
 
 mod assemble;
+mod clamps;
 mod display;
 pub mod model;
 pub mod schedule;

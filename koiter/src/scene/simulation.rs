@@ -1,6 +1,7 @@
 //! A running simulation.
 
 use super::assemble::{Assembly, BuildError, assemble};
+use super::clamps::Clamps;
 use super::display::{PartTopology, tessellate};
 use super::model::{IntegratorKind, Model};
 use crate::Vec3;
@@ -16,7 +17,7 @@ pub struct Simulation {
     state: State,
     integrator: Box<dyn Integrator>,
     obstacles: Vec<(Dof, Vec<Vec3>)>,
-    start_angles: Vec<f64>,
+    clamps: Clamps,
     parts: Vec<PartTopology>,
     /// Mass times acceleration of the last step [N]; zero in statics.
     momentum_rates: Vec<f64>,
@@ -50,6 +51,7 @@ impl Simulation {
             q,
             velocities,
             obstacles,
+            clamps,
         } = assemble(&model)?;
         let integrator: Box<dyn Integrator> = match model.integrator {
             IntegratorKind::ImplicitEuler => Box::new(ImplicitEuler {
@@ -66,7 +68,6 @@ impl Simulation {
             time: 0.0,
             step: 0,
         };
-        let start_angles = state.q.clone();
         let momentum_rates = vec![0.0; system.masses.len()];
         Ok(Self {
             model,
@@ -74,7 +75,7 @@ impl Simulation {
             state,
             integrator,
             obstacles,
-            start_angles,
+            clamps,
             parts,
             momentum_rates,
         })
@@ -97,6 +98,8 @@ impl Simulation {
         if let Some(scale) = &self.model.gravity_scale {
             self.system.gravity.acceleration = self.model.gravity * scale.at(time);
         }
+        self.clamps
+            .advance(&self.model, time, self.system.clamps.local_mut());
         let prescribed = self.prescribed_at(time);
         let before = self.state.velocities.clone();
         let report = self
@@ -126,25 +129,13 @@ impl Simulation {
         for constraint in self.model.constraints.iter().filter(|c| time <= c.until) {
             let shell = &self.model.shells[constraint.shell];
             let part = &self.system.space.shells[constraint.shell];
-            let mut held = vec![false; shell.surface.mesh.num_vertices()];
             for vertex in &constraint.vertices {
                 let v = vertex.0 as usize;
-                held[v] = true;
                 let x = constraint.motion.apply(shell.surface.positions[v], time);
                 let start = part.first_vertex.0 as usize + 3 * v;
                 for axis in (0..3).filter(|&axis| constraint.axes[axis]) {
                     is_fixed[start + axis] = true;
                     target[start + axis] = x[axis];
-                }
-            }
-            let Some(first_edge) = part.first_edge.filter(|_| constraint.clamp_directors) else {
-                continue;
-            };
-            for (edge, [u, v]) in shell.surface.mesh.edges().iter().enumerate() {
-                if held[*u as usize] && held[*v as usize] {
-                    let dof = first_edge.0 as usize + edge;
-                    is_fixed[dof] = true;
-                    target[dof] = self.start_angles[dof];
                 }
             }
         }

@@ -1,10 +1,12 @@
 //! Bending models.
 
+mod director_clamp;
 mod hinge;
 mod mid_edge;
 mod profile;
 mod quadratic_form;
 
+pub use director_clamp::{ClampedEdge, DirectorClamp};
 pub use hinge::DiscreteShellsHinge;
 pub use mid_edge::{
     BendingStencil, DirectorShape, MidEdgeBending, bending_stencils, curvatures, directors,

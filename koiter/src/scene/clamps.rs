@@ -1,0 +1,110 @@
+//! Clamped edges: from constraints to prescribed directors, and along their motions.
+
+use super::model::{Constraint, Model};
+use crate::Vec3;
+use crate::energy::bending::{ClampedEdge, DirectorClamp};
+use crate::integrate::ShellPart;
+use crate::mesh::{EdgeId, FaceId};
+
+/// Stiffness of a clamp, in units of the bending stiffness of its face: the director of a clamped edge is then wrong by
+/// 10⁻⁴ of what the face itself bends, and the matrix is no worse conditioned than by the membrane.
+const STIFFNESS: f64 = 1e4;
+
+/// Where a clamped edge came from.
+struct Source {
+    constraint: usize,
+    start_ends: [Vec3; 2],
+    start_director: Vec3,
+    stiffness: f64,
+}
+
+/// All clamped edges of a scene.
+pub(super) struct Clamps {
+    sources: Vec<Source>,
+}
+
+impl Clamps {
+    /// Edges between vertices whose three coordinates a clamping constraint holds, in shells with directors.
+    pub(super) fn new(model: &Model, parts: &[ShellPart], q: &[f64]) -> (Self, DirectorClamp) {
+        let mut sources = Vec::new();
+        let mut edges = Vec::new();
+        for (index, constraint) in model.constraints.iter().enumerate() {
+            let (shell, part) = (&model.shells[constraint.shell], &parts[constraint.shell]);
+            if !constraint.clamp_directors
+                || constraint.axes != [true; 3]
+                || part.first_edge.is_none()
+            {
+                continue;
+            }
+            let nu = shell.poissons_ratio;
+            let rigidity =
+                shell.youngs_modulus * shell.thickness.powi(3) / (12.0 * (1.0 - nu * nu));
+            for (edge, face, corner) in held_edges(constraint, part) {
+                let vertices = part.mesh.faces()[face];
+                let ends = [vertices[(corner + 1) % 3], vertices[(corner + 2) % 3]];
+                let start_ends = ends.map(|v| part.position(v as usize, q));
+                let along = start_ends[1] - start_ends[0];
+                let start_director = part.directors(face, q)[corner].normalize();
+                let apex = part.position(vertices[corner] as usize, q) - start_ends[0];
+                let altitude = along.cross(&apex).norm() / along.norm();
+                let stiffness = STIFFNESS * rigidity * along.norm() / altitude;
+                let stencil = &part.stencils[face];
+                sources.push(Source {
+                    constraint: index,
+                    start_ends,
+                    start_director,
+                    stiffness,
+                });
+                edges.push(ClampedEdge {
+                    apex: stencil.corners[corner],
+                    across: stencil.across[corner],
+                    angle: stencil.angles[corner],
+                    sign: stencil.signs[corner],
+                    ends: start_ends,
+                    director: start_director,
+                    stiffness,
+                    vertices: part.mesh.edges()[edge],
+                });
+            }
+        }
+        (Self { sources }, DirectorClamp { edges })
+    }
+
+    /// Moves the prescribed edges and directors to a time [s].
+    pub(super) fn advance(&self, model: &Model, time: f64, clamp: &mut DirectorClamp) {
+        for (source, edge) in self.sources.iter().zip(&mut clamp.edges) {
+            let constraint = &model.constraints[source.constraint];
+            let moved = |x: Vec3| constraint.motion.apply(x, time);
+            let [a, b] = source.start_ends;
+            edge.ends = [moved(a), moved(b)];
+            edge.director = (moved(a + source.start_director) - edge.ends[0]).normalize();
+            edge.stiffness = if time <= constraint.until {
+                source.stiffness
+            } else {
+                0.0
+            };
+        }
+    }
+}
+
+/// Edges with both ends held, each with a face that sees it and its corner there.
+fn held_edges(constraint: &Constraint, part: &ShellPart) -> Vec<(usize, usize, usize)> {
+    let mut held = vec![false; part.mesh.num_vertices()];
+    for vertex in &constraint.vertices {
+        held[vertex.0 as usize] = true;
+    }
+    let mut found = Vec::new();
+    for (edge, [u, v]) in part.mesh.edges().iter().enumerate() {
+        if held[*u as usize] && held[*v as usize] {
+            let [first, second] = part.mesh.edge_faces()[edge];
+            let FaceId(face) = first.or(second).expect("every edge has a face");
+            let edges = part.mesh.face_edges()[face as usize];
+            let corner = edges
+                .iter()
+                .position(|e| *e == EdgeId(edge as u32))
+                .expect("the face has the edge");
+            found.push((edge, face as usize, corner));
+        }
+    }
+    found
+}
