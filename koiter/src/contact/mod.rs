@@ -2,7 +2,7 @@
 //!
 //! All surfaces form one [`CollisionMesh`] whose vertices, edges and faces carry an offset (half a thickness; the radius
 //! of a ball or capsule). A pair of primitives touches when their distance is the sum of their offsets; its gap is what
-//! is left. Pairs are found once a line search ([`broad_phase`]), bound the step ([`ccd`]), and push ([`barrier`]).
+//! is left. Pairs are found once a line search (`broad_phase`), bound the step (`ccd`), and push (`barrier`).
 //! Reference: Li et al., "Incremental Potential Contact" (2020); Li, Kaufman, Jiang, "Codimensional IPC" (2021).
 
 mod audit;
