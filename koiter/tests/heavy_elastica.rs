@@ -196,8 +196,8 @@ fn irregular_strips_bend_as_much_as_regular_ones() {
 fn the_clamp_does_not_depend_on_the_cells_it_holds() {
     let [wide, narrow] =
         [1.0, 0.1].map(|column| hang(regular_strip(16, column), BendingModel::Bac, 5.0));
-    // Both are equilibria to the displacement tolerance of 1e-7 m.
-    assert!(distance(wide, narrow) < 1e-6, "{wide:?} {narrow:?}");
+    // A clamp is a penalty: its director yields by about 1e-4 of what its face bends, which is a sixteenth of the strip.
+    assert!(distance(wide, narrow) < 2e-5, "{wide:?} {narrow:?}");
 }
 
 #[test]

@@ -14,7 +14,7 @@ use crate::energy::bending::{
 use crate::energy::{Gravity, Membrane};
 use crate::integrate::{OffsetSurfaces, ShellPart, System, relax_directors};
 use crate::material::StVenantKirchhoff;
-use crate::mesh::{FaceId, Surface, VertexId};
+use crate::mesh::Surface;
 use crate::rest::{RestError, rest_frames};
 use crate::solve::LinearWorkspace;
 
@@ -96,21 +96,12 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     let mut elastic: Vec<Box<dyn Energy>> = Vec::new();
     let mut masses = vec![0.0; layout.num_solved_dofs()];
     let mut parts = Vec::new();
-    for (index, ((shell, &first_vertex), &first_edge)) in
-        model.shells.iter().zip(&vertices).zip(&edges).enumerate()
-    {
+    for ((shell, &first_vertex), &first_edge) in model.shells.iter().zip(&vertices).zip(&edges) {
         let fail = |error| BuildError::Rest {
             shell: shell.name.clone(),
             error,
         };
         let mut part = shell_part(shell, first_vertex, first_edge).map_err(fail)?;
-        for clamp in model
-            .constraints
-            .iter()
-            .filter(|c| c.shell == index && c.clamp_directors)
-        {
-            measure_from_held_faces(&mut part, &clamp.vertices);
-        }
         add_vertex_masses(&part, shell.density, &mut masses);
         let material = StVenantKirchhoff::new(shell.youngs_modulus, shell.poissons_ratio);
         let membrane = Membrane::new(
@@ -204,35 +195,6 @@ fn shell_part(
             first_edge.unwrap_or(Dof(0)),
         ),
     })
-}
-
-/// Where a held face meets a free one, the edge angle is measured from the normal of the held face instead of the
-/// bisector: then a held angle is a held director. Measured from the bisector, half of the hinge angle at the edge of a
-/// clamp would bend the held face, and the strip would be longer by half a cell.
-fn measure_from_held_faces(part: &mut ShellPart, vertices: &[VertexId]) {
-    let mut is_held = vec![false; part.mesh.num_vertices()];
-    vertices.iter().for_each(|v| is_held[v.0 as usize] = true);
-    let held_face = |face: FaceId| {
-        part.mesh.faces()[face.0 as usize]
-            .iter()
-            .all(|&v| is_held[v as usize])
-    };
-    for (edge, faces) in part.mesh.edge_faces().iter().enumerate() {
-        let [Some(first), Some(second)] = *faces else {
-            continue;
-        };
-        if held_face(first) == held_face(second) {
-            continue;
-        }
-        for face in [first, second] {
-            let corners = part.mesh.face_edges()[face.0 as usize];
-            let corner = corners
-                .iter()
-                .position(|e| e.0 as usize == edge)
-                .expect("the face has the edge");
-            part.stencils[face.0 as usize].shares[corner] = if held_face(face) { 0.0 } else { 1.0 };
-        }
-    }
 }
 
 fn rest_surface(shell: &Shell) -> Surface {

@@ -138,11 +138,8 @@ pub struct Constraint {
     pub axes: [bool; 3],
     /// Motion relative to the start positions.
     pub motion: Motion,
-    /// Whether the edge directors between constrained vertices are held too (a clamp).
-    ///
-    /// Hold whole faces: where a held face meets a free one, the director keeps its angle to the held face, and the
-    /// surface leaves the clamp in that direction, whatever the size of the held cells. Where only a line of vertices is
-    /// held there is no such face; its directors turn with the free faces, and the line is a hinge.
+    /// Whether the directors of edges between constrained vertices are held too (a clamp): they keep their direction at
+    /// the start, turned with the motion. Needs all three axes; models without directors hold whole faces instead.
     pub clamp_directors: bool,
     /// The constraint ends at this time [s] (never: infinity).
     pub until: f64,

@@ -2,14 +2,12 @@
 //!
 //! ```text
 //! E = (h³/12) Ā w(κ),    κ = D⁻ᵀ II D⁻¹ − b̄,    II = [[q₀ + q₁, q₀], [q₀, q₀ + q₂]],    q_c = 2 a_c g(ζ_c)
-//! ζ_c = s_c θ_c + ε_c α_c,    s_c = 1/2
+//! ζ_c = θ_c / 2 + ε_c α_c
 //! ```
 //!
 //! h thickness [m], Ā rest area [m²], w density of the material [Pa], D rest edges ([`RestFrame`]), b̄ rest second
 //! fundamental form in the same frame [1/m], a_c altitude over edge c [m], θ_c hinge angle, α_c edge angle, ε_c sign of
 //! the edge in the face, g the profile: sin (DCS), identity (DSO), tan (BAC). Boundary edges have θ = 0 and a free α.
-//! The share s_c is another where α is not measured from the bisector: at the edge of a clamped part, from the normal of
-//! the clamped face (s = 0 there, 1 on the other side), so that holding α holds the director.
 //! Reference: "Better Bending" (2026), Eqs. (30), (31), (48); `2 a = 4 A / ℓ` there.
 //!
 //! The unknowns are the corners, the opposite vertices of the three neighbours, and the three edge angles. The Hessian
@@ -17,7 +15,7 @@
 //! wings of an edge (own: N T M Ψ K, neighbour's: primed)
 //!
 //! ```text
-//! q'' / 2a = g (N² + M² − (M + K)²) + 2 g' T (ε α − s N') + g'' ζ'² + 2 s g' (Ψ (M + K/2) + N' T' + Ψ' (M' + K'/2))
+//! q'' / 2a = g (N² + M² − (M + K)²) + g' T (2 ε α − N') + g'' ζ'² + g' (Ψ (M + K/2) + N' T' + Ψ' (M' + K'/2))
 //! ```
 //!
 //! where each term has a closed positive part ([`super::quadratic_form`]).
@@ -50,8 +48,6 @@ pub struct BendingStencil {
     pub angles: [Dof; 3],
     /// ε of each edge.
     pub signs: [f64; 3],
-    /// Share s of the hinge angle in the tilt of each edge; the shares of the two faces of an edge sum to one.
-    pub shares: [f64; 3],
 }
 
 /// Stencils of all faces, for vertices of three unknowns from `first_vertex` on and edge angles from `first_edge` on.
@@ -70,7 +66,6 @@ pub fn bending_stencils(mesh: &TriMesh, first_vertex: Dof, first_edge: Dof) -> V
                 }),
                 angles: edges.map(|e| Dof(first_edge.0 + e.0)),
                 signs,
-                shares: [0.5; 3],
             }
         })
         .collect()
@@ -103,7 +98,7 @@ fn tilt_and_wing(stencil: &BendingStencil, c: usize, has_angle: bool, q: &[f64])
     } else {
         0.0
     };
-    (stencil.shares[c] * theta + stencil.signs[c] * angle, wing)
+    (0.5 * theta + stencil.signs[c] * angle, wing)
 }
 
 /// The directors of the three edges of a face, as seen from it ("Better Bending", Eqs. 65, 66).
@@ -137,7 +132,6 @@ struct Corner {
     neighbor: Option<Wing>,
     profile: [f64; 3],
     sign: f64,
-    share: f64,
 }
 
 impl Corner {
@@ -150,7 +144,7 @@ impl Corner {
     fn tilt_change(&self, own: &Functional, other: Option<&Functional>) -> Functional {
         let mut out = [0.0; WIDTH];
         if let Some(other) = other {
-            out = std::array::from_fn(|i| -self.share * (own[i] + other[i]));
+            out = std::array::from_fn(|i| -0.5 * (own[i] + other[i]));
         }
         out[ANGLE] = self.sign;
         out
@@ -226,11 +220,7 @@ impl<P: AngleProfile, M: Material> MidEdgeBending<P, M> {
         let theta = neighbor
             .as_ref()
             .map_or(0.0, |other| hinge_angle(&wing, other));
-        (
-            stencil.shares[c] * theta + stencil.signs[c] * q[18 + c],
-            wing,
-            neighbor,
-        )
+        (0.5 * theta + stencil.signs[c] * q[18 + c], wing, neighbor)
     }
 
     fn corners(&self, stencil: usize, q: &SVector<f64, 21>) -> [Corner; 3] {
@@ -241,7 +231,6 @@ impl<P: AngleProfile, M: Material> MidEdgeBending<P, M> {
                 neighbor,
                 profile: P::eval(tilt),
                 sign: self.stencils[stencil].signs[c],
-                share: self.stencils[stencil].shares[c],
             }
         })
     }
@@ -336,7 +325,7 @@ impl<P: AngleProfile, M: Material> MidEdgeBending<P, M> {
                 Some(_) => turning_angle(&[a, b, apex, point(3 + c)]),
                 None => R::from(0.0),
             };
-            let tilt = theta * face.shares[c] + q[18 + c] * face.signs[c];
+            let tilt = theta * 0.5 + q[18 + c] * face.signs[c];
             twice_area / norm(e) * P::formula(tilt) * 2.0
         });
         let rows = self.frames[stencil].second_form_matrix();
@@ -381,7 +370,7 @@ fn corner_form(corner: &Corner, moment: f64, clamp: bool) -> (Functional, Quadra
     let mut partner = [0.0; WIDTH];
     partner[ANGLE] = 2.0 * corner.sign;
     if let Some(other) = &other {
-        partner = scaled_sum(&partner, &other.turning, -2.0 * corner.share);
+        partner = scaled_sum(&partner, &other.turning, -1.0);
         if clamp {
             // In a fold the neighbour's normal leaves that of the face, so N' and T are not orthogonal, as the closed
             // positive part of a product needs: split off the square of T.
@@ -390,11 +379,11 @@ fn corner_form(corner: &Corner, moment: f64, clamp: bool) -> (Functional, Quadra
             partner = scaled_sum(&partner, &own.stretching, -along);
         }
         form.add_product(
-            2.0 * corner.share * k * g1,
+            k * g1,
             &own.tilting,
             &scaled_sum(&own.sliding, &own.swinging, 0.5),
         );
-        other.add_angle(corner.share * k * g1, &mut form);
+        other.add_angle(0.5 * k * g1, &mut form);
     }
     form.add_product(k * g1, &own.stretching, &partner);
     (slope, form)
@@ -441,10 +430,10 @@ impl<P: AngleProfile, M: Material> LocalEnergy<21, 9> for MidEdgeBending<P, M> {
             }
             if let Some(neighbor) = &corner.neighbor {
                 for (i, v) in corner.wing.turning().iter().enumerate() {
-                    add(nodes[i], v, -corner.share * scale * g1);
+                    add(nodes[i], v, -0.5 * scale * g1);
                 }
                 for (v, i) in neighbor.turning().iter().zip([1, 0, 3]) {
-                    add(nodes[i], v, -corner.share * scale * g1);
+                    add(nodes[i], v, -0.5 * scale * g1);
                 }
             }
             gradient[18 + c] += scale * g1 * corner.sign;
