@@ -458,6 +458,6 @@ fn reactions_carry_the_weight() {
         "{force} N against {weight} N"
     );
     let tip = summary["probes"]["tip"][2].as_f64().unwrap();
-    // The clamp acts half a cell inside: the heavy elastica of 0.21 m drops by 0.1543 m.
-    assert!((tip / -0.1543 - 1.0).abs() < 0.01, "{tip}");
+    // The heavy elastica drops by 0.1400 m; twelve cells come within half a per cent.
+    assert!((tip / -0.1400 - 1.0).abs() < 0.005, "{tip}");
 }

@@ -70,6 +70,15 @@ impl Clamps {
         (Self { sources }, DirectorClamp { edges })
     }
 
+    /// The part of a clamp that one constraint makes.
+    pub(super) fn of_constraint(&self, constraint: usize, clamp: &DirectorClamp) -> DirectorClamp {
+        let edges = self.sources.iter().zip(&clamp.edges);
+        let own = edges.filter(|(source, _)| source.constraint == constraint);
+        DirectorClamp {
+            edges: own.map(|(_, edge)| *edge).collect(),
+        }
+    }
+
     /// Moves the prescribed edges and directors to a time [s].
     pub(super) fn advance(&self, model: &Model, time: f64, clamp: &mut DirectorClamp) {
         for (source, edge) in self.sources.iter().zip(&mut clamp.edges) {

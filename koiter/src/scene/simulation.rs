@@ -5,7 +5,7 @@ use super::clamps::Clamps;
 use super::display::{PartTopology, tessellate};
 use super::model::{IntegratorKind, Model};
 use crate::Vec3;
-use crate::assembly::{Dof, Energy};
+use crate::assembly::{Assembled, Dof, Energy};
 use crate::integrate::{
     ImplicitEuler, Integrator, Prescribed, QuasiStatic, State, StepError, StepReport, System,
 };
@@ -214,17 +214,28 @@ impl Simulation {
         if let Some(contact) = &self.system.contact {
             contact.add_gradient(&self.state.q, &mut gradient);
         }
-        let constraint = &self.model.constraints[constraint];
+        let index = constraint;
+        let constraint = &self.model.constraints[index];
+        let mut held = vec![false; gradient.len()];
         let mut force = Vec3::zeros();
         if self.state.time > constraint.until {
             return force;
         }
-        let first = self.system.space.shells[constraint.shell].first_vertex.0 as usize;
+        let part = &self.system.space.shells[constraint.shell];
+        let first = part.first_vertex.0 as usize;
         for vertex in &constraint.vertices {
             for axis in (0..3).filter(|&axis| constraint.axes[axis]) {
                 let dof = first + 3 * vertex.0 as usize + axis;
                 force[axis] += gradient[dof] + self.momentum_rates[dof];
+                held[dof] = true;
             }
+        }
+        // A clamp turns the surface by pushing free vertices too.
+        let clamp = self.clamps.of_constraint(index, self.system.clamps.local());
+        let mut pushes = vec![0.0; gradient.len()];
+        Assembled::new(clamp, &self.system.layout).add_gradient(&self.state.q, &mut pushes);
+        for dof in part.vertex_dofs().filter(|&dof| !held[dof]) {
+            force[(dof - first) % 3] -= pushes[dof];
         }
         force
     }
