@@ -209,6 +209,7 @@ fn squared_sine_derivatives(x: &[Vec3; 4]) -> (SVector<f64, 12>, SMatrix<f64, 12
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::{Jet, Real};
 
     fn check(kind: PairKind, points: [[f64; 3]; 4], threshold: f64) {
         let x = points.map(|p| Vec3::new(p[0], p[1], p[2]));
@@ -246,6 +247,63 @@ mod tests {
         assert!(eigenvalues.min() > -1e-12 * projected.norm());
         let scaled = projected * gradient;
         assert!(scaled.norm() > 0.0);
+    }
+
+    /// The barrier over jets, where both closest points are interior, from the textbook distances of a point and a plane
+    /// and of two lines: `(separation · n)² / |n|²`.
+    fn by_jets(kind: PairKind, points: [[f64; 3]; 4], barrier: &LogBarrier) -> Jet<12> {
+        let x: [[Jet<12>; 3]; 4] = std::array::from_fn(|i| {
+            std::array::from_fn(|k| Jet::variable(points[i][k], 3 * i + k))
+        });
+        let sub = |p: &[Jet<12>; 3], q: &[Jet<12>; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+        let dot = |p: &[Jet<12>; 3], q: &[Jet<12>; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+        let (u, v, separation) = match kind {
+            PairKind::VertexFace => (sub(&x[2], &x[1]), sub(&x[3], &x[1]), sub(&x[0], &x[1])),
+            PairKind::EdgeEdge => (sub(&x[1], &x[0]), sub(&x[3], &x[2]), sub(&x[0], &x[2])),
+        };
+        let n = [
+            u[1] * v[2] - u[2] * v[1],
+            u[2] * v[0] - u[0] * v[2],
+            u[0] * v[1] - u[1] * v[0],
+        ];
+        let along = dot(&separation, &n);
+        let distance_squared = along * along / dot(&n, &n);
+        let touching = barrier.touching_distance * barrier.touching_distance;
+        let ratio = (distance_squared - touching) * (1.0 / barrier.range);
+        -((ratio - 1.0) * (ratio - 1.0) * ratio.ln())
+    }
+
+    #[test]
+    fn interior_pairs_agree_with_dual_numbers() {
+        let barrier = LogBarrier::new(0.1, 0.9);
+        let edges = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.1, 0.0],
+            [0.4, -0.5, 0.3],
+            [0.6, 0.8, 0.4],
+        ];
+        let face = [[0.4, 0.35, 0.5], FACE[0], FACE[1], FACE[2]];
+        for (kind, points) in [(PairKind::VertexFace, face), (PairKind::EdgeEdge, edges)] {
+            let x = points.map(|p| Vec3::new(p[0], p[1], p[2]));
+            let closest = Pair {
+                kind,
+                vertices: [0, 1, 2, 3],
+            }
+            .closest(&x);
+            assert_eq!(closest.slides().len(), 2);
+            let (gradient, hessian) =
+                derivatives(&closest, &barrier, &x, 0.0, PsdProjection::Exact);
+            let oracle = by_jets(kind, points, &barrier);
+            assert!((barrier.value(closest.distance_squared) - oracle.value()).abs() < 1e-13);
+            for i in 0..12 {
+                assert!((gradient[i] - oracle.gradient()[i]).abs() < 1e-12 * gradient.norm());
+                for j in 0..12 {
+                    assert!(
+                        (hessian[(i, j)] - oracle.hessian(i, j)).abs() < 1e-11 * hessian.norm()
+                    );
+                }
+            }
+        }
     }
 
     const FACE: [[f64; 3]; 3] = [[0.0, 0.0, 0.1], [1.1, 0.2, 0.0], [0.3, 0.9, -0.2]];

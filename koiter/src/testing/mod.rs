@@ -320,3 +320,133 @@ fn rigid_motion(
     }
     Ok(())
 }
+
+/// Checks an energy that is not a sum over fixed elements (contact, friction, inertia, gravity): gradient and Hessian
+/// against differences whose error falls with h², a positive semidefinite projection, and the same bits for any number
+/// of threads. `prepare` and `begin_iteration` are called wherever the energy is evaluated.
+///
+/// # Errors
+/// The first violation.
+pub fn check_global(
+    energy: &mut dyn Energy,
+    layout: &DofLayout,
+    q: &[f64],
+) -> Result<(), Violation> {
+    let name = energy.name();
+    let fail = |property, stencil, found, expected| {
+        Err(Violation {
+            energy: name,
+            property,
+            stencil,
+            found,
+            expected,
+        })
+    };
+    energy.prepare(q);
+    energy.begin_iteration(q);
+    let mut builder = PatternBuilder::default();
+    energy.add_to_pattern(q, &mut builder);
+    let pattern = std::sync::Arc::new(Pattern::new(layout, &builder.finish()));
+    energy.bind(&pattern);
+    let solved = layout.num_solved_dofs();
+    let direction: Vec<f64> = (0..q.len())
+        .map(|i| {
+            if i < solved {
+                ((i * i + 3) as f64 * 0.7).sin()
+            } else {
+                0.0
+            }
+        })
+        .collect();
+    let run = |energy: &dyn Energy, projection| {
+        let mut matrix = SymmetricMatrix::zeros(pattern.clone());
+        let mut gradient = vec![0.0; q.len()];
+        let mut coupling = vec![0.0; solved];
+        let steps = &direction[solved..];
+        let mut hessian = HessianBuilder {
+            matrix: &mut matrix,
+            layout,
+            prescribed_step: steps,
+            coupling: &mut coupling,
+        };
+        energy.add_derivatives(q, projection, &mut gradient, &mut hessian);
+        (gradient, matrix)
+    };
+    let (gradient, matrix) = run(energy, PsdProjection::Exact);
+    let (same, projected) = run(energy, PsdProjection::Clamp);
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let (slope, image) = (
+        dot(&gradient, &direction),
+        matrix.multiply(&direction[..solved]),
+    );
+    if !(slope.abs() > 0.0) {
+        return fail(
+            "the gradient is not zero at the tested state",
+            0,
+            slope,
+            1.0,
+        );
+    }
+    if same != gradient {
+        return fail(
+            "the gradient does not depend on the projection",
+            0,
+            0.0,
+            0.0,
+        );
+    }
+    #[cfg(feature = "parallel")]
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("a thread pool starts");
+        let (g, m) = pool.install(|| run(energy, PsdProjection::Exact));
+        if g != gradient || m.values != matrix.values {
+            return fail(
+                "serial and parallel assembly give the same bits",
+                threads,
+                1.0,
+                0.0,
+            );
+        }
+    }
+    if dot(&projected.multiply(&direction[..solved]), &direction) < 0.0 {
+        return fail("projected Hessian is positive semidefinite", 0, -1.0, 0.0);
+    }
+    let at = |h: f64| -> Vec<f64> { q.iter().zip(&direction).map(|(x, d)| x + h * d).collect() };
+    let extent = q.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let mut errors = Vec::new();
+    for h in [4e-6, 2e-6, 1e-6].map(|h| h * extent) {
+        let mut value_and_gradient = |h: f64| {
+            let x = at(h);
+            energy.begin_iteration(&x);
+            let mut g = vec![0.0; q.len()];
+            energy.add_gradient(&x, &mut g);
+            (energy.value(&x), g)
+        };
+        let ((v1, g1), (v0, g0)) = (value_and_gradient(h), value_and_gradient(-h));
+        let by_value = ((v1 - v0) / (2.0 * h) - slope).abs() / slope.abs();
+        let scale = image.iter().fold(1e-300f64, |m, x| m.max(x.abs()));
+        let by_gradient = (0..solved)
+            .map(|i| ((g1[i] - g0[i]) / (2.0 * h) - image[i]).abs() / scale)
+            .fold(0.0, f64::max);
+        errors.push([by_value, by_gradient]);
+    }
+    energy.begin_iteration(q);
+    for (k, property) in [
+        "differences of the value approach the gradient with h²",
+        "differences of the gradient approach the Hessian with h²",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        for pair in errors.windows(2) {
+            // Round-off of the difference quotients at these steps is below 1e-7 of the result.
+            if pair[1][k] > 0.35 * pair[0][k] && pair[1][k] > 1e-7 {
+                return fail(property, 0, pair[1][k], 0.25 * pair[0][k]);
+            }
+        }
+    }
+    Ok(())
+}
