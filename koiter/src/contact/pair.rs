@@ -193,7 +193,7 @@ fn squared_sine_derivatives(x: &[Vec3; 4]) -> (SVector<f64, 12>, SMatrix<f64, 12
         identity * (2.0 * uu) - u * u.transpose() * 2.0,
     ];
     let cross = u * v.transpose() * 4.0 - v * u.transpose() * 2.0 - identity * (2.0 * uv);
-    let sign = |i: usize| if (i / 3) % 2 == 0 { -1.0 } else { 1.0 };
+    let sign = |i: usize| if (i / 3).is_multiple_of(2) { -1.0 } else { 1.0 };
     let gradient = SVector::<f64, 12>::from_fn(|i, _| sign(i) * by_edge[i / 6][i % 3]);
     let hessian = SMatrix::<f64, 12, 12>::from_fn(|i, j| {
         let entry = match (i / 6, j / 6) {
