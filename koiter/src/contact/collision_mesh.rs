@@ -122,6 +122,9 @@ impl CollisionMesh {
     /// A vertex in the user's terms.
     pub fn describe_vertex(&self, vertex: u32) -> String {
         let body = self.body[vertex as usize] as usize;
+        if self.bodies[body].faces.is_empty() {
+            return format!("'{}'", self.bodies[body].name);
+        }
         format!(
             "vertex {} of '{}'",
             vertex - self.body_starts[body].0,
@@ -132,6 +135,9 @@ impl CollisionMesh {
     /// A face or edge, by its vertices, in the user's terms.
     pub fn describe(&self, kind: &str, vertices: &[u32]) -> String {
         let body = self.body[vertices[0] as usize] as usize;
+        if self.bodies[body].faces.is_empty() {
+            return format!("'{}'", self.bodies[body].name);
+        }
         let local: Vec<String> = vertices
             .iter()
             .map(|v| (v - self.body_starts[body].0).to_string())

@@ -1,7 +1,7 @@
 //! The barrier energy of everything that may touch.
 
 use super::barrier::LogBarrier;
-use super::broad_phase::{Aabb, BoxTree};
+use super::candidates::Candidates;
 use super::ccd::{Approach, additive_ccd};
 use super::collision_mesh::CollisionMesh;
 use super::friction::{Friction, FrictionContact};
@@ -23,45 +23,19 @@ const STIFFEN_BELOW: f64 = 0.02;
 /// The barrier is stiffened by at most this factor over a run.
 const LARGEST_STIFFENING: f64 = 1e6;
 
-/// Candidates a vertex, on average, before a step is searched in a shorter reach: bounds memory when a wild Newton step
-/// sweeps the whole scene. A sheet folded to a stack has about 70.
-const CANDIDATES_PER_VERTEX: usize = 400;
-
 /// Contact of all bodies of a scene.
 pub struct Contact {
-    mesh: CollisionMesh,
-    planes: Vec<CollisionPlane>,
+    pub(super) mesh: CollisionMesh,
+    pub(super) planes: Vec<CollisionPlane>,
     layout: DofLayout,
-    d_hat: f64,
+    pub(super) d_hat: f64,
     kappa: f64,
     largest_kappa: f64,
-    face_tree: SweptTree,
-    edge_tree: SweptTree,
-    candidates: Vec<Pair>,
+    pub(super) candidates: Candidates,
     active: Vec<ActivePair>,
     active_planes: Vec<ActiveVertex>,
     smallest_gap: f64,
     limiter: Option<Limiter>,
-}
-
-/// A tree whose leaf order is kept until it has become this much worse than when it was made.
-#[derive(Default)]
-struct SweptTree {
-    tree: BoxTree,
-    cost_when_built: f64,
-}
-
-impl SweptTree {
-    fn update(&mut self, boxes: &[Aabb]) {
-        if self.tree.len() == boxes.len() {
-            self.tree.refit(boxes);
-            if self.tree.cost() <= 1.5 * self.cost_when_built {
-                return;
-            }
-        }
-        self.tree.rebuild(boxes);
-        self.cost_when_built = self.tree.cost();
-    }
 }
 
 struct ActivePair {
@@ -74,10 +48,10 @@ struct ActivePair {
     area: f64,
 }
 
-struct ActiveVertex {
-    vertex: u32,
-    plane: usize,
-    distance: f64,
+pub(super) struct ActiveVertex {
+    pub(super) vertex: u32,
+    pub(super) plane: usize,
+    pub(super) distance: f64,
 }
 
 enum Limiter {
@@ -97,48 +71,6 @@ pub struct ContactStatistics {
     pub kappa: f64,
 }
 
-/// Two primitives that touch or overlap.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TouchingPair {
-    /// The primitives in the user's terms.
-    pub description: String,
-    /// Gap between the surfaces [m], not positive.
-    pub gap: f64,
-    /// Vertices in the collision mesh.
-    pub vertices: Vec<u32>,
-}
-
-/// A start configuration that touches or intersects.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{}", self.message())]
-pub struct StartError {
-    /// What touches, worst first.
-    pub pairs: Vec<TouchingPair>,
-    /// Whether any of them intersect (rather than being closer than their thickness).
-    pub intersects: bool,
-}
-
-impl StartError {
-    fn message(&self) -> String {
-        let verb = if self.intersects {
-            "intersects"
-        } else {
-            "touches"
-        };
-        let mut text = format!(
-            "the start configuration {verb} itself or an obstacle in {} places:",
-            self.pairs.len()
-        );
-        for pair in self.pairs.iter().take(5) {
-            text += &format!("\n  {} (gap {:.3e} m)", pair.description, pair.gap);
-        }
-        if self.pairs.len() > 5 {
-            text += &format!("\n  … and {} more", self.pairs.len() - 5);
-        }
-        text + "\nmove the parts apart, or reduce the contact thickness"
-    }
-}
-
 impl Contact {
     /// `d_hat` [m] gap at which the barrier begins, `kappa` [J/m²] its stiffness an area.
     pub fn new(
@@ -155,9 +87,7 @@ impl Contact {
             d_hat,
             kappa,
             largest_kappa: kappa * LARGEST_STIFFENING,
-            face_tree: SweptTree::default(),
-            edge_tree: SweptTree::default(),
-            candidates: Vec::new(),
+            candidates: Candidates::default(),
             active: Vec::new(),
             active_planes: Vec::new(),
             smallest_gap: f64::INFINITY,
@@ -180,76 +110,19 @@ impl Contact {
         self.kappa = kappa;
     }
 
-    fn positions(&self, q: &[f64]) -> Vec<Vec3> {
+    pub(super) fn positions(&self, q: &[f64]) -> Vec<Vec3> {
         (0..self.mesh.vertices.len() as u32)
             .map(|v| self.mesh.position(v, q))
             .collect()
     }
 
-    fn touching_distance(&self, pair: &Pair) -> f64 {
+    pub(super) fn touching_distance(&self, pair: &Pair) -> f64 {
         let other = if pair.kind == PairKind::VertexFace {
             1
         } else {
             2
         };
         self.mesh.offset(pair.vertices[0]) + self.mesh.offset(pair.vertices[other])
-    }
-
-    /// Finds all pairs that come within d̂ of touching anywhere between `x` and `x + dx`; false if there are too many.
-    fn find_candidates(&mut self, x: &[Vec3], dx: Option<&[Vec3]>) -> bool {
-        let mesh = &self.mesh;
-        let swept = |vertices: &[u32]| {
-            let margin = mesh.offset(vertices[0]) + 0.5 * self.d_hat;
-            let at = |v: &u32| x[*v as usize];
-            match dx {
-                None => Aabb::around(vertices.iter().map(at), margin),
-                Some(dx) => Aabb::around(
-                    vertices
-                        .iter()
-                        .flat_map(|v| [at(v), at(v) + dx[*v as usize]]),
-                    margin,
-                ),
-            }
-        };
-        let limit = CANDIDATES_PER_VERTEX * mesh.vertices.len() + 100_000;
-        let vertex_boxes = parallel_map(mesh.vertices.len(), |v| swept(&[v as u32]));
-        let edge_boxes = parallel_map(mesh.edges.len(), |e| swept(&mesh.edges[e]));
-        let face_boxes = parallel_map(mesh.faces.len(), |f| swept(&mesh.faces[f]));
-        self.face_tree.update(&face_boxes);
-        self.edge_tree.update(&edge_boxes);
-        let both_obstacles = |a: u32, b: u32| mesh.is_obstacle(a) && mesh.is_obstacle(b);
-        let vertex_faces = self.face_tree.tree.pairs(&vertex_boxes, |v, f| {
-            let face = &mesh.faces[f as usize];
-            !face.contains(&v) && !both_obstacles(v, face[0])
-        });
-        if vertex_faces.len() > limit {
-            return false;
-        }
-        let edge_edges = self.edge_tree.tree.self_pairs(|a, b| {
-            let (first, second) = (&mesh.edges[a as usize], &mesh.edges[b as usize]);
-            !second.contains(&first[0])
-                && !second.contains(&first[1])
-                && !both_obstacles(first[0], second[0])
-        });
-        if vertex_faces.len() + edge_edges.len() > limit {
-            return false;
-        }
-        let faces = vertex_faces.iter().map(|&[v, f]| {
-            let [a, b, c] = mesh.faces[f as usize];
-            Pair {
-                kind: PairKind::VertexFace,
-                vertices: [v, a, b, c],
-            }
-        });
-        let edges = edge_edges.iter().map(|&[a, b]| {
-            let ([a0, a1], [b0, b1]) = (mesh.edges[a as usize], mesh.edges[b as usize]);
-            Pair {
-                kind: PairKind::EdgeEdge,
-                vertices: [a0, a1, b0, b1],
-            }
-        });
-        self.candidates = faces.chain(edges).collect();
-        true
     }
 
     /// The pair with all its barrier needs, if it is active.
@@ -303,7 +176,7 @@ impl Contact {
     }
 
     /// Vertices of shells near a plane, as `(vertex, plane, distance)`.
-    fn near_planes(&self, q: &[f64]) -> Vec<ActiveVertex> {
+    pub(super) fn near_planes(&self, q: &[f64]) -> Vec<ActiveVertex> {
         let mut near = Vec::new();
         for (plane, obstacle) in self.planes.iter().enumerate() {
             let distances = parallel_map(self.mesh.vertices.len(), |v| {
@@ -358,8 +231,8 @@ impl Contact {
 
     /// Collects the active pairs at `q` among the candidates.
     pub fn refresh(&mut self, q: &[f64]) {
-        self.active = parallel_map(self.candidates.len(), |i| {
-            self.activate(&self.candidates[i], q)
+        self.active = parallel_map(self.candidates.pairs.len(), |i| {
+            self.activate(&self.candidates.pairs[i], q)
         })
         .into_iter()
         .flatten()
@@ -420,95 +293,6 @@ impl Contact {
         }
     }
 
-    /// Everything that touches or intersects at `q`: by exact predicates for meshes, by distance for thickness, balls,
-    /// capsules and planes.
-    pub fn touching(&mut self, q: &[f64]) -> Vec<TouchingPair> {
-        let x = self.positions(q);
-        let mesh = &self.mesh;
-        let both_obstacles = |a: u32, b: u32| mesh.is_obstacle(a) && mesh.is_obstacle(b);
-        let mut found: Vec<TouchingPair> =
-            super::intersections(&x, &mesh.edges, &mesh.faces, both_obstacles)
-                .into_iter()
-                .map(|hit| {
-                    let (edge, face) =
-                        (mesh.edges[hit.edge as usize], mesh.faces[hit.face as usize]);
-                    let description = format!(
-                        "{} crosses {}",
-                        mesh.describe("edge", &edge),
-                        mesh.describe("face", &face)
-                    );
-                    TouchingPair {
-                        description,
-                        gap: 0.0,
-                        vertices: edge.into_iter().chain(face).collect(),
-                    }
-                })
-                .collect();
-        if !self.find_candidates(&x, None) {
-            return found;
-        }
-        let mesh = &self.mesh;
-        for pair in &self.candidates {
-            let positions = pair.vertices.map(|v| x[v as usize]);
-            let gap =
-                pair.closest(&positions).distance_squared.sqrt() - self.touching_distance(pair);
-            if gap <= 0.0 {
-                let [a, b, c, d] = pair.vertices;
-                let description = match pair.kind {
-                    PairKind::VertexFace => {
-                        format!(
-                            "{} touches {}",
-                            mesh.describe_vertex(a),
-                            mesh.describe("face", &[b, c, d])
-                        )
-                    }
-                    PairKind::EdgeEdge => {
-                        format!(
-                            "{} touches {}",
-                            mesh.describe("edge", &[a, b]),
-                            mesh.describe("edge", &[c, d])
-                        )
-                    }
-                };
-                found.push(TouchingPair {
-                    description,
-                    gap,
-                    vertices: pair.vertices.to_vec(),
-                });
-            }
-        }
-        for near in self.near_planes(q) {
-            let gap = near.distance - mesh.offset(near.vertex);
-            if gap <= 0.0 {
-                let name = &self.planes[near.plane].name;
-                let description =
-                    format!("{} is below '{name}'", mesh.describe_vertex(near.vertex));
-                found.push(TouchingPair {
-                    description,
-                    gap,
-                    vertices: vec![near.vertex],
-                });
-            }
-        }
-        found.sort_by(|a, b| a.gap.total_cmp(&b.gap));
-        found
-    }
-
-    /// Refuses a start that touches or intersects.
-    ///
-    /// # Errors
-    /// What touches.
-    pub fn check_start(&mut self, q: &[f64]) -> Result<(), StartError> {
-        let pairs = self.touching(q);
-        if pairs.is_empty() {
-            return Ok(());
-        }
-        let intersects = pairs
-            .iter()
-            .any(|p| p.description.contains("crosses") || p.description.contains("below"));
-        Err(StartError { pairs, intersects })
-    }
-
     fn describe_pair(&self, pair: &Pair) -> String {
         let [a, b, c, d] = pair.vertices;
         match pair.kind {
@@ -561,7 +345,7 @@ impl Energy for Contact {
 
     fn prepare(&mut self, q: &[f64]) {
         let x = self.positions(q);
-        if !self.find_candidates(&x, None) {
+        if !self.candidates.find(&self.mesh, self.d_hat, &x, None) {
             log::warn!(
                 "more candidate pairs than fit in memory: is d_hat larger than the mesh's edges?"
             );
@@ -582,8 +366,8 @@ impl Energy for Contact {
     }
 
     fn value(&self, q: &[f64]) -> f64 {
-        let pairs = ordered_sum(self.candidates.len(), |i| {
-            match self.activate(&self.candidates[i], q) {
+        let pairs = ordered_sum(self.candidates.pairs.len(), |i| {
+            match self.activate(&self.candidates.pairs[i], q) {
                 None => 0.0,
                 Some(active) => {
                     let b = active.barrier.value(active.closest.distance_squared);
@@ -679,7 +463,7 @@ impl Energy for Contact {
         let mut dx = self.positions(direction);
         let mut reach = 1.0;
         self.limiter = None;
-        while !self.find_candidates(&x, Some(&dx)) {
+        while !self.candidates.find(&self.mesh, self.d_hat, &x, Some(&dx)) {
             // 40 halvings bring any finite step below d̂; a scene too dense even then keeps its last candidates.
             reach *= 0.5;
             if reach < 1e-12 {
@@ -689,24 +473,24 @@ impl Energy for Contact {
             dx.iter_mut().for_each(|d| *d *= 0.5);
             self.limiter = Some(Limiter::Reach);
         }
-        let approaches = parallel_map(self.candidates.len(), |i| {
-            let pair = &self.candidates[i];
+        let approaches = parallel_map(self.candidates.pairs.len(), |i| {
+            let pair = &self.candidates.pairs[i];
             let at = |of: &[Vec3]| pair.vertices.map(|v| of[v as usize]);
             additive_ccd(pair, &at(&x), &at(&dx), self.touching_distance(pair))
         });
         let mut bound = 1.0;
-        for (pair, approach) in self.candidates.iter().zip(&approaches) {
+        for (pair, approach) in self.candidates.pairs.iter().zip(&approaches) {
             if approach.fraction < bound {
                 bound = approach.fraction;
                 self.limiter = Some(Limiter::Pair(*pair));
             }
         }
         // Most pairs of overlapping boxes are never near: the line search need not look at them again.
-        let candidates = std::mem::take(&mut self.candidates);
+        let candidates = std::mem::take(&mut self.candidates.pairs);
         let near = |(pair, approach): (Pair, &Approach)| {
             (approach.nearest < self.touching_distance(&pair) + self.d_hat).then_some(pair)
         };
-        self.candidates = candidates
+        self.candidates.pairs = candidates
             .into_iter()
             .zip(&approaches)
             .filter_map(near)

@@ -8,19 +8,22 @@
 mod audit;
 mod barrier;
 mod broad_phase;
+mod candidates;
 mod ccd;
 mod collision_mesh;
 mod energy;
 mod friction;
 mod pair;
 mod plane;
+mod start;
 
 pub use audit::{Intersection, intersections};
 pub use barrier::LogBarrier;
 pub use broad_phase::{Aabb, BoxTree};
 pub use ccd::{Approach, additive_ccd};
 pub use collision_mesh::{CollisionBody, CollisionMesh};
-pub use energy::{Contact, ContactStatistics, StartError, TouchingPair};
+pub use energy::{Contact, ContactStatistics};
 pub use friction::Friction;
 pub use pair::{Pair, PairKind};
 pub use plane::CollisionPlane;
+pub use start::{StartError, TouchingPair};

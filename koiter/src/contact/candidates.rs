@@ -1,0 +1,105 @@
+//! Pairs that may come near each other, found once for a whole line search.
+
+use super::broad_phase::{Aabb, BoxTree};
+use super::collision_mesh::CollisionMesh;
+use super::pair::{Pair, PairKind};
+use crate::Vec3;
+use crate::assembly::parallel_map;
+
+/// Candidates a vertex, on average, before a step is searched in a shorter reach: bounds memory when a wild Newton step
+/// sweeps the whole scene. A sheet folded to a stack has about 70.
+const CANDIDATES_PER_VERTEX: usize = 400;
+
+/// The pairs, and the trees that find them.
+#[derive(Default)]
+pub(super) struct Candidates {
+    /// Vertex–face pairs, then edge–edge pairs.
+    pub(super) pairs: Vec<Pair>,
+    face_tree: SweptTree,
+    edge_tree: SweptTree,
+}
+
+/// A tree whose leaf order is kept until it has become this much worse than when it was made.
+#[derive(Default)]
+struct SweptTree {
+    tree: BoxTree,
+    cost_when_built: f64,
+}
+
+impl SweptTree {
+    fn update(&mut self, boxes: &[Aabb]) {
+        if self.tree.len() == boxes.len() {
+            self.tree.refit(boxes);
+            if self.tree.cost() <= 1.5 * self.cost_when_built {
+                return;
+            }
+        }
+        self.tree.rebuild(boxes);
+        self.cost_when_built = self.tree.cost();
+    }
+}
+
+impl Candidates {
+    /// Finds all pairs whose surfaces come within `d_hat` of each other anywhere between `x` and `x + dx`, by their boxes.
+    /// Returns false, and leaves the pairs as they were, if there are too many.
+    pub(super) fn find(
+        &mut self,
+        mesh: &CollisionMesh,
+        d_hat: f64,
+        x: &[Vec3],
+        dx: Option<&[Vec3]>,
+    ) -> bool {
+        let swept = |vertices: &[u32]| {
+            let margin = mesh.offset(vertices[0]) + 0.5 * d_hat;
+            let at = |v: &u32| x[*v as usize];
+            match dx {
+                None => Aabb::around(vertices.iter().map(at), margin),
+                Some(dx) => Aabb::around(
+                    vertices
+                        .iter()
+                        .flat_map(|v| [at(v), at(v) + dx[*v as usize]]),
+                    margin,
+                ),
+            }
+        };
+        let limit = CANDIDATES_PER_VERTEX * mesh.vertices.len() + 100_000;
+        let vertex_boxes = parallel_map(mesh.vertices.len(), |v| swept(&[v as u32]));
+        let edge_boxes = parallel_map(mesh.edges.len(), |e| swept(&mesh.edges[e]));
+        let face_boxes = parallel_map(mesh.faces.len(), |f| swept(&mesh.faces[f]));
+        self.face_tree.update(&face_boxes);
+        self.edge_tree.update(&edge_boxes);
+        let both_obstacles = |a: u32, b: u32| mesh.is_obstacle(a) && mesh.is_obstacle(b);
+        let vertex_faces = self.face_tree.tree.pairs(&vertex_boxes, |v, f| {
+            let face = &mesh.faces[f as usize];
+            !face.contains(&v) && !both_obstacles(v, face[0])
+        });
+        if vertex_faces.len() > limit {
+            return false;
+        }
+        let edge_edges = self.edge_tree.tree.self_pairs(|a, b| {
+            let (first, second) = (&mesh.edges[a as usize], &mesh.edges[b as usize]);
+            !second.contains(&first[0])
+                && !second.contains(&first[1])
+                && !both_obstacles(first[0], second[0])
+        });
+        if vertex_faces.len() + edge_edges.len() > limit {
+            return false;
+        }
+        let faces = vertex_faces.iter().map(|&[v, f]| {
+            let [a, b, c] = mesh.faces[f as usize];
+            Pair {
+                kind: PairKind::VertexFace,
+                vertices: [v, a, b, c],
+            }
+        });
+        let edges = edge_edges.iter().map(|&[a, b]| {
+            let ([a0, a1], [b0, b1]) = (mesh.edges[a as usize], mesh.edges[b as usize]);
+            Pair {
+                kind: PairKind::EdgeEdge,
+                vertices: [a0, a1, b0, b1],
+            }
+        });
+        self.pairs = faces.chain(edges).collect();
+        true
+    }
+}
