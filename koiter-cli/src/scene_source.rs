@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 use koiter::io::read::{MeshFormat, RawMesh, ReadError};
 use koiter::io::read_mesh;
 use koiter::mesh::{MeshError, Surface, SurfaceOptions};
-use koiter::scene::{MeshSource, Scene, SceneFile, UnreadableMesh, nearest};
+use koiter::scene::{
+    MeshSource, Scene, SceneError, SceneErrorKind, SceneFile, UnreadableMesh, nearest,
+};
+use koiter_render::CameraView;
 
 use crate::arguments::SceneArguments;
 use crate::failure::{Failure, print_warning};
@@ -57,6 +60,7 @@ pub(crate) struct LoadedScene {
 pub(crate) fn load(arguments: &SceneArguments) -> Result<LoadedScene, Failure> {
     let found = find(&arguments.scene)?;
     let file = SceneFile::parse(&found.display, &found.text, &arguments.overrides)?;
+    check_camera(&file)?;
     let scene = Scene::build(&file, &found.meshes)?;
     scene.warnings.iter().for_each(print_warning);
     Ok(LoadedScene {
@@ -64,6 +68,22 @@ pub(crate) fn load(arguments: &SceneArguments) -> Result<LoadedScene, Failure> {
         text: file.document.to_toml(),
         scene,
     })
+}
+
+/// The library knows no cameras; a wrong one should not show only after a long run.
+fn check_camera(file: &SceneFile) -> Result<(), SceneError> {
+    let Some(Err(error)) = file
+        .spec
+        .output
+        .camera
+        .as_deref()
+        .map(str::parse::<CameraView>)
+    else {
+        return Ok(());
+    };
+    let path = "output.camera";
+    let error = SceneError::new(SceneErrorKind::UnknownName, error.to_string()).inside(path);
+    Err(error.or_at(file.document.locate(path).as_ref()))
 }
 
 struct Found {

@@ -155,6 +155,13 @@ fn mistakes_in_an_override_point_into_it() {
         "{text}"
     );
     assert!(text.contains("did you mean 'bac'?"), "{text}");
+    let output = koiter(&["run", &scene, "--set", "output.camera=fornt"]);
+    assert_eq!(status(&output), 2);
+    assert!(
+        stderr(&output).contains("unknown camera `fornt`"),
+        "{}",
+        stderr(&output)
+    );
 }
 
 #[test]

@@ -407,6 +407,13 @@ fn check_output(spec: &SceneSpec) -> Checked {
             .with_help(suggest(name, &FIELD_NAMES)));
         }
     }
+    if let Some(color) = &output.color
+        && !output.fields.contains(color)
+    {
+        let message =
+            format!("the field '{color}' is not among output.fields, so it is not written");
+        return Err(error(Kind::Conflict, "output.color", message));
+    }
     Ok(())
 }
 

@@ -507,6 +507,18 @@ fn keys_that_exclude_each_other_are_refused() {
     for (from, to, path, place, words) in cases {
         assert_mistake(&mistake(from, to), Kind::Conflict, path, place, &[words]);
     }
+    let error = mistake(
+        "title = \"Test\"",
+        "output = { fields = [], color = \"strain\" }",
+    );
+    let place = (1, "\"strain\"");
+    assert_mistake(
+        &error,
+        Kind::Conflict,
+        "output.color",
+        place,
+        &["not written"],
+    );
     let twice = format!(
         "{SCENE}\n[[shell]]\nname = \"cloth\"\nmaterial = \"paper\"\nmesh.disc = {{ radius = 1, rings = 2 }}"
     );
