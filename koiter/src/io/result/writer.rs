@@ -175,6 +175,10 @@ fn clear_old_result(folder: &Path) -> Result<(), ResultError> {
         }
         Err(error) => return Err(error),
     }
+    // The topology first: without it a half-cleared result is not taken for a whole one.
+    for name in [TOPOLOGY, SUMMARY, STATS].into_iter().chain(COMPANIONS) {
+        remove_if_there(&folder.join(name))?;
+    }
     let frames = folder.join(FRAMES);
     if frames.is_dir() {
         for entry in fs::read_dir(&frames).map_err(while_trying("list", &frames))? {
@@ -186,9 +190,6 @@ fn clear_old_result(folder: &Path) -> Result<(), ResultError> {
                 remove_if_there(&path)?;
             }
         }
-    }
-    for name in [SUMMARY, STATS, TOPOLOGY].into_iter().chain(COMPANIONS) {
-        remove_if_there(&folder.join(name))?;
     }
     Ok(())
 }
