@@ -11,6 +11,9 @@ const LEAST_TEXT: f32 = 11.0;
 /// Length of the bar in the height of the picture.
 const BAR: f32 = 0.42;
 
+/// How much the plate behind the legend covers: dark letters keep a contrast above 4.5 to 1 over the darkest colours.
+const PLATE_COVER: f32 = 0.72;
+
 /// Draws what the options ask for.
 pub(crate) fn draw(image: &mut Image, options: &RenderOptions, range: (f64, f64)) {
     let is_field = matches!(options.color, ColorBy::Field { .. });
@@ -71,6 +74,17 @@ impl Pen<'_> {
         let height = (BAR * picture_height).round().max(1.0);
         let top = (0.5 * (picture_height - height) + 0.8 * size).round() as i64;
 
+        let title = scale.title(name, unit);
+        let title_left = right - self.typeface.width(&title, size);
+        let plate_left = (left as f32).min(title_left) - 0.6 * size;
+        let corners = (
+            (plate_left as i64, top - (2.4 * size) as i64),
+            (
+                (right + 0.6 * size) as i64,
+                top + (height + 0.9 * size) as i64,
+            ),
+        );
+        self.plate(image, corners);
         for row in 0..height as i64 {
             let t = 1.0 - (row as f64 + 0.5) / f64::from(height);
             let color = map.at(if low <= high { t } else { 1.0 - t }).to_bytes();
@@ -94,10 +108,19 @@ impl Pen<'_> {
             self.typeface
                 .draw(image, label, size, self.ink, at, Align::Left);
         }
-        let title = scale.title(name, unit);
         let at = (right, top as f32 - size);
         self.typeface
             .draw(image, &title, size, self.ink, at, Align::Right);
+    }
+
+    /// A plate behind the figures, so that they can be read over the surface.
+    fn plate(&self, image: &mut Image, ((left, top), (right, bottom)): ((i64, i64), (i64, i64))) {
+        let paper = if self.ink[0] < 128 { [244; 3] } else { [24; 3] };
+        for row in top..bottom {
+            for column in left..right {
+                image.blend(column, row, paper, PLATE_COVER);
+            }
+        }
     }
 
     fn frame(&self, image: &mut Image, (left, top): (i64, i64), (width, height): (i64, i64)) {

@@ -1,7 +1,10 @@
-//! `cargo run --release --example drape_n -- 35 ds-theta 40`
+//! `cargo run --release -p koiter --example drape_n -- 35 ds-theta 40`
 //!
-//! A cloth of 2 N² triangles falls on a ball (a mesh obstacle); prints mean height and lowest point, iterations and
-//! seconds by part, step by step.
+//! A cloth of 2 N² triangles falls on a ball that is a mesh: the scene `drape-n`, built in Rust instead of TOML. Prints mean
+//! height, lowest point, iterations and contacts step by step, and at the end seconds by part.
+//!
+//! Expect: for N = 35 a mean height of 0.2636 m after step 5 and about 0.081 m after step 40.
+//! Try next: `bac` or `dcs` instead of `ds-theta`; N = 70; `RAYON_NUM_THREADS=1`.
 
 use koiter::Vec3;
 use koiter::mesh::generate::{GridDiagonals, grid, icosphere};
