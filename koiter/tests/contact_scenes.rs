@@ -455,3 +455,14 @@ fn a_start_that_intersects_is_refused_with_names_and_distances() {
     assert!(message.contains("touches 'ball'") || message.contains("'ball' touches"));
     assert!(message.contains("(gap -1.000e-2 m)"));
 }
+
+#[test]
+fn a_barrier_that_reaches_beyond_an_element_is_refused() {
+    let mut model = scene(vec![cloth(0.5, 2, 1.0)], vec![floor(0.0)]);
+    model.contact.d_hat = Some(0.6);
+    let message = refused(model);
+    assert!(
+        message.contains("'cloth'") && message.contains("reduce d_hat"),
+        "{message}"
+    );
+}

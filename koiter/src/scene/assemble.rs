@@ -30,6 +30,19 @@ pub enum BuildError {
         /// What is wrong.
         error: RestError,
     },
+    /// The barrier reaches further than the elements are large.
+    #[error(
+        "shell '{shell}': surfaces repel within {reach:.2e} m (d_hat and contact thickness), but its mean edge is \
+         {mean_edge:.2e} m: every triangle would repel its neighbours; reduce d_hat or the thickness, or use larger triangles"
+    )]
+    ContactReach {
+        /// Name of the shell.
+        shell: String,
+        /// d̂ + ξ [m].
+        reach: f64,
+        /// Mean rest edge [m].
+        mean_edge: f64,
+    },
     /// Something touches or intersects at the start.
     #[error(transparent)]
     Start(#[from] StartError),
@@ -133,6 +146,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         masses: vertex_masses(&parts, &masses),
         acceleration: model.gravity,
     };
+    check_contact_reach(model)?;
     let mut contact = build_contact(model, &vertices, &obstacles, &layout);
     if let Some(contact) = &mut contact {
         contact.check_start(&q)?;
@@ -369,6 +383,23 @@ fn build_contact(
         d_hat,
         kappa,
     ))
+}
+
+/// Refuses a barrier that reaches beyond an element: its pairs would be all neighbours, and their number without bound.
+fn check_contact_reach(model: &Model) -> Result<(), BuildError> {
+    let d_hat = model.contact.d_hat.unwrap_or(0.0);
+    for shell in model.shells.iter().filter(|_| model.contact.enabled) {
+        let reach = d_hat + 2.0 * shell.contact_offset;
+        let mean_edge = rest_surface(shell).mean_edge_length();
+        if reach > mean_edge {
+            return Err(BuildError::ContactReach {
+                shell: shell.name.clone(),
+                reach,
+                mean_edge,
+            });
+        }
+    }
+    Ok(())
 }
 
 fn shell_body(shell: &Shell, first_dof: Dof) -> CollisionBody {
