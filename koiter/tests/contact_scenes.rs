@@ -460,7 +460,7 @@ fn a_start_that_intersects_is_refused_with_names_and_distances() {
 fn a_barrier_that_reaches_beyond_an_element_is_refused() {
     let mut model = scene(vec![cloth(0.5, 2, 1.0)], vec![floor(0.0)]);
     model.contact.d_hat = Some(0.6);
-    let message = refused(model);
+    let message = Simulation::new(model).err().expect("a refusal").to_string();
     assert!(
         message.contains("'cloth'") && message.contains("reduce d_hat"),
         "{message}"
