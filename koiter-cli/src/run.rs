@@ -15,6 +15,7 @@ use koiter::integrate::{StepError, StepReport};
 use koiter::io::result::{Field, Frame, ResultError, ResultWriter};
 use koiter::scene::Scene;
 use koiter::scene::Simulation;
+use koiter::scene::spec::MAX_STEPS;
 
 use crate::arguments::RunArguments;
 use crate::failure::Failure;
@@ -83,6 +84,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
 fn num_steps(scene: &Scene, until: Option<f64>) -> Result<usize, Failure> {
     match until {
         None => Ok(scene.num_steps),
+        Some(until) if until / scene.dt > MAX_STEPS => Err(Failure::input(format!(
+            "--until {until} s would take more than {MAX_STEPS:e} steps of {} s",
+            scene.dt
+        ))),
         Some(until) if until.is_finite() && until > 0.0 => {
             Ok(((until / scene.dt - 1e-9).ceil() as usize).max(1))
         }

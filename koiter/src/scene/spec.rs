@@ -21,6 +21,7 @@
 mod check;
 mod shape;
 
+pub use check::MAX_STEPS;
 pub use shape::{
     BoxSpec, CapsuleSpec, CylinderBodySpec, MeshSpec, PlaneSpec, RotationSpec, SphereSpec, Units,
     UpAxis,

@@ -11,8 +11,8 @@ use crate::scene::schedule::{MotionSpec, Schedule};
 
 type Checked = Result<(), SceneError>;
 
-/// More steps than this are a slip in `dt`.
-const MAX_STEPS: f64 = 1e8;
+/// More steps than this are a slip in `dt` or in the end.
+pub const MAX_STEPS: f64 = 1e8;
 
 /// Checks a whole scene; the first mistake is returned with its path.
 pub(super) fn check(spec: &SceneSpec) -> Checked {
