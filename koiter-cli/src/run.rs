@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         .unwrap_or_else(|| PathBuf::from("results").join(&loaded.name));
     let simulation = start(&loaded.scene.model, arguments.debug_mesh.as_deref())?;
     let interrupted = watch_for_interrupt();
-    let mut recorder = Recorder::create(&folder, &loaded, &simulation)?;
+    let mut recorder = Recorder::create(&folder, &loaded, &simulation, num_steps)?;
     let mut progress = Progress::new(num_steps, arguments.quiet);
     let end = advance(
         simulation,
@@ -63,7 +63,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         recorder.summary.print(&folder, &made);
     }
     end?;
-    if interrupted.load(Ordering::Relaxed) {
+    if recorder.summary.interrupted {
         let message = format!(
             "interrupted after step {}; the result up to there is whole",
             recorder.summary.steps
@@ -131,6 +131,7 @@ fn advance(
         recorder.record(&simulation, &report, stop || step == num_steps)?;
         progress.show(&report);
         if stop {
+            recorder.summary.interrupted = step < num_steps;
             break;
         }
     }
@@ -152,6 +153,7 @@ impl<'a> Recorder<'a> {
         folder: &std::path::Path,
         loaded: &'a LoadedScene,
         simulation: &Simulation,
+        num_steps: usize,
     ) -> Result<Self, Failure> {
         let (manifest, faces) = start::manifest(loaded, simulation);
         let writer = ResultWriter::create(folder, &manifest, &faces).map_err(writing)?;
@@ -163,7 +165,7 @@ impl<'a> Recorder<'a> {
             ))
         };
         let probes = ProbeWriter::create(folder, &scene.probes).map_err(cannot_write)?;
-        let summary = Summary::new(&simulation.stats());
+        let summary = Summary::new(&simulation.stats(), num_steps, scene.model.contact.enabled);
         let started = Instant::now();
         let mut recorder = Self {
             scene,
@@ -231,7 +233,7 @@ impl<'a> Recorder<'a> {
     fn note_error(&mut self, error: &StepError) {
         self.summary.converged = false;
         if matches!(error, StepError::Intersection { .. }) {
-            self.summary.intersections += 1;
+            self.summary.intersections = self.summary.intersections.map(|count| count + 1);
         }
     }
 

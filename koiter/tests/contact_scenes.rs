@@ -466,3 +466,34 @@ fn a_barrier_that_reaches_beyond_an_element_is_refused() {
         "{message}"
     );
 }
+
+#[test]
+fn a_shell_that_starts_inside_a_box_is_refused() {
+    let inside = cloth(0.1, 2, 0.0);
+    let solid = obstacle(
+        "box",
+        ObstacleShape::Mesh(box_mesh([0.4, 0.4, 0.4]).unwrap()),
+    );
+    let message = Simulation::new(scene(vec![inside], vec![solid]))
+        .err()
+        .expect("a refusal")
+        .to_string();
+    assert!(message.contains("lies inside 'box'"), "{message}");
+}
+
+#[test]
+fn a_plane_that_is_to_turn_is_refused() {
+    let mut plane = floor(-1.0);
+    plane.motion.rotation = Some(koiter::scene::model::Rotation {
+        pivot: Vec3::zeros(),
+        axis: Vec3::x(),
+        angle: koiter::scene::model::Schedule {
+            times: vec![0.0, 1.0],
+            values: vec![0.0, 1.0],
+        },
+    });
+    let message = Simulation::new(scene(vec![cloth(0.5, 2, 0.0)], vec![plane]))
+        .err()
+        .expect("a refusal");
+    assert!(message.to_string().contains("a plane cannot rotate"));
+}

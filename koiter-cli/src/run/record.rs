@@ -56,13 +56,18 @@ impl<'a> StatsLine<'a> {
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Summary {
     pub(super) steps: usize,
+    /// Steps the run was to take.
+    pub(super) planned_steps: usize,
+    /// Whether it was stopped before its end.
+    pub(super) interrupted: bool,
     pub(super) time: f64,
     pub(super) seconds: f64,
     #[serde(serialize_with = "as_map")]
     pub(super) seconds_by_part: Vec<(&'static str, f64)>,
     pub(super) newton_iterations: usize,
     pub(super) min_gap: f64,
-    pub(super) intersections: usize,
+    /// `null` where contact is off and nothing was checked.
+    pub(super) intersections: Option<usize>,
     pub(super) vertices: usize,
     pub(super) faces: usize,
     pub(super) dofs: usize,
@@ -73,15 +78,17 @@ pub(super) struct Summary {
 }
 
 impl Summary {
-    pub(super) fn new(stats: &SystemStats) -> Self {
+    pub(super) fn new(stats: &SystemStats, planned_steps: usize, contact: bool) -> Self {
         Self {
             steps: 0,
+            planned_steps,
+            interrupted: false,
             time: 0.0,
             seconds: 0.0,
             seconds_by_part: Vec::new(),
             newton_iterations: 0,
             min_gap: f64::INFINITY,
-            intersections: 0,
+            intersections: contact.then_some(0),
             vertices: stats.vertices,
             faces: stats.faces,
             dofs: stats.dofs,
@@ -98,7 +105,9 @@ impl Summary {
         self.time = report.time;
         self.newton_iterations += report.newton_iterations;
         self.min_gap = self.min_gap.min(report.min_gap);
-        self.intersections += report.intersections;
+        if let Some(count) = &mut self.intersections {
+            *count += report.intersections;
+        }
         self.converged &= report.converged;
         for &(part, seconds) in &report.seconds {
             match self
@@ -129,7 +138,10 @@ impl Summary {
             "{} steps to t = {:.3} s in {:.1} s, {} Newton iterations",
             self.steps, self.time, self.seconds, self.newton_iterations
         );
-        println!("{} intersections; {gap}", self.intersections);
+        match self.intersections {
+            Some(count) => println!("{count} intersections; {gap}"),
+            None => println!("contact is off: intersections were not looked for"),
+        }
         if let Some(bytes) = self.peak_memory_bytes {
             println!(
                 "{} vertices, {} triangles, {} at most",
@@ -202,7 +214,7 @@ mod tests {
             estimated_memory_bytes: 0,
             energies: vec![],
         };
-        let mut summary = Summary::new(&stats);
+        let mut summary = Summary::new(&stats, 1, true);
         for (step, converged) in [(1, true), (2, false)] {
             summary.add(&StepReport {
                 step,

@@ -30,8 +30,15 @@ pub fn relax_directors(
     (first, count): (Dof, usize),
     q: &mut [f64],
 ) -> Result<(), RestError> {
+    let range = first.0 as usize..first.0 as usize + count;
+    let mut gradient = vec![0.0; q.len()];
+    bending.add_gradient(q, &mut gradient);
+    if gradient[range.clone()].iter().all(|moment| *moment == 0.0) {
+        // A flat sheet: nothing to solve for, and the factorisation would be the largest cost of reading a scene.
+        return Ok(());
+    }
     let mut is_fixed = vec![true; layout.num_solved_dofs()];
-    is_fixed[first.0 as usize..first.0 as usize + count].fill(false);
+    is_fixed[range].fill(false);
     let target = q.to_vec();
     let mut problem = Problem {
         energies: vec![bending],

@@ -233,6 +233,7 @@ impl System {
                     details: worst.join("; "),
                 });
             }
+            contact.prepare(&next.q);
             contact.refresh(&next.q);
             let statistics = contact.statistics();
             (report.contacts, report.min_gap, report.kappa) =

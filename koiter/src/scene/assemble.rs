@@ -43,6 +43,12 @@ pub enum BuildError {
         /// Mean rest edge [m].
         mean_edge: f64,
     },
+    /// A plane that is to turn.
+    #[error("obstacle '{obstacle}': a plane cannot rotate, only move; use a box or a mesh")]
+    TurningPlane {
+        /// Name of the obstacle.
+        obstacle: String,
+    },
     /// Something touches or intersects at the start.
     #[error(transparent)]
     Start(#[from] StartError),
@@ -147,6 +153,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         acceleration: model.gravity,
     };
     check_contact_reach(model)?;
+    check_planes(model)?;
     let mut contact = build_contact(model, &vertices, &obstacles, &layout);
     if let Some(contact) = &mut contact {
         contact.check_start(&q)?;
@@ -385,13 +392,29 @@ fn build_contact(
     ))
 }
 
+/// A plane is a point and a normal that stays as it is.
+fn check_planes(model: &Model) -> Result<(), BuildError> {
+    let turning = |o: &&Obstacle| {
+        matches!(o.shape, ObstacleShape::Plane { .. }) && o.motion.rotation.is_some()
+    };
+    match model.obstacles.iter().find(turning) {
+        Some(obstacle) => Err(BuildError::TurningPlane {
+            obstacle: obstacle.name.clone(),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Largest reach of contact in mean edges: beyond it, elements would touch their neighbours' neighbours at rest.
+const LARGEST_REACH_BY_EDGE: f64 = 0.5;
+
 /// Refuses a barrier that reaches beyond an element: its pairs would be all neighbours, and their number without bound.
 fn check_contact_reach(model: &Model) -> Result<(), BuildError> {
     let d_hat = model.contact.d_hat.unwrap_or(0.0);
     for shell in model.shells.iter().filter(|_| model.contact.enabled) {
         let reach = d_hat + 2.0 * shell.contact_offset;
         let mean_edge = rest_surface(shell).mean_edge_length();
-        if reach > mean_edge {
+        if reach > LARGEST_REACH_BY_EDGE * mean_edge {
             return Err(BuildError::ContactReach {
                 shell: shell.name.clone(),
                 reach,

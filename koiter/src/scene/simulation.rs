@@ -40,6 +40,11 @@ pub struct SystemStats {
     pub energies: Vec<&'static str>,
 }
 
+/// Peaks of runs with BAC: 38 MB at 2.6k unknowns, 187 MB at 14k, 234 MB at 30k, 2.9 GB at 483k. Most is the factor.
+const BYTES_A_DOF: usize = 6_000;
+/// The program itself, with its scene and pictures.
+const PROGRAM_BYTES: usize = 40_000_000;
+
 impl Simulation {
     /// Builds energies and masses, solves for rest and start directors, and checks the start.
     ///
@@ -325,9 +330,6 @@ impl Simulation {
         let has_directors = directors > sum(&|m| m.num_vertices());
         // Entries a face, both triangles, counted on large Delaunay meshes: 166 with directors, 58 with hinges.
         let hessian_nonzeros = faces * if has_directors { 166 } else { 58 };
-        // Factor entries grow like n log n: about 30 an unknown at 10⁴ unknowns, 8 more for every doubling.
-        let growth = 30.0 + 8.0 * (dofs.max(10_000) as f64 / 1e4).log2();
-        let factor = 1.3 * growth * dofs as f64 * 8.0;
         let mut energies: Vec<&'static str> =
             self.energies().into_iter().map(|(name, _)| name).collect();
         energies.dedup();
@@ -336,7 +338,7 @@ impl Simulation {
             faces,
             dofs,
             hessian_nonzeros,
-            estimated_memory_bytes: factor as usize + hessian_nonzeros * 10 + faces * 2_000,
+            estimated_memory_bytes: PROGRAM_BYTES + dofs * BYTES_A_DOF,
             energies,
         }
     }
