@@ -1,5 +1,6 @@
 //! `koiter check`: reads everything, runs nothing.
 
+use crate::output::say;
 use serde::Serialize;
 
 use crate::arguments::CheckArguments;
@@ -88,7 +89,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<(), Failure> {
             .collect(),
     };
     if arguments.json {
-        println!("{}", serde_json::to_string(&report).map_err(Failure::run)?);
+        say!("{}", serde_json::to_string(&report).map_err(Failure::run)?);
     } else {
         report.print();
     }
@@ -98,10 +99,10 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<(), Failure> {
 impl Report {
     fn print(&self) {
         if !self.title.is_empty() {
-            println!("{}", self.title);
+            say!("{}", self.title);
         }
         for shell in &self.shells {
-            println!(
+            say!(
                 "shell {}: {} vertices, {} triangles, {:.4} m², {:.4} kg, edges {:.2e} m (shortest {:.2e} m), \
                  smallest angle {:.1}°, boundary loops of {:?} vertices",
                 shell.name,
@@ -116,11 +117,11 @@ impl Report {
             );
         }
         if !self.obstacles.is_empty() {
-            println!("obstacles: {}", self.obstacles.join(", "));
+            say!("obstacles: {}", self.obstacles.join(", "));
         }
-        println!("constraints: {}", self.constraints);
-        println!("energies: {}", self.energies.join(", "));
-        println!(
+        say!("constraints: {}", self.constraints);
+        say!("energies: {}", self.energies.join(", "));
+        say!(
             "in all {} vertices, {} triangles, {} degrees of freedom, {} Hessian entries, about {}",
             self.vertices,
             self.faces,
@@ -128,7 +129,7 @@ impl Report {
             self.hessian_nonzeros,
             memory::readable(self.estimated_memory_bytes)
         );
-        println!("{} steps of {} s", self.steps, self.dt);
-        println!("the scene is sound");
+        say!("{} steps of {} s", self.steps, self.dt);
+        say!("the scene is sound");
     }
 }

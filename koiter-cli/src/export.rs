@@ -1,5 +1,6 @@
 //! `koiter export`: a result for other programs.
 
+use crate::output::say;
 use koiter::io::result::ResultReader;
 use koiter::io::write::{MeshWithFields, write_obj, write_ply, write_vtu, write_vtu_series};
 
@@ -51,6 +52,6 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         }
         .map_err(Failure::run)?;
     }
-    println!("made: {}", output.display());
+    say!("made: {}", output.display());
     Ok(())
 }

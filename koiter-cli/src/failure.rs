@@ -1,5 +1,6 @@
 //! What goes wrong: printed with its place, and turned into an exit status.
 
+use crate::output::say_error;
 use std::fmt::Display;
 use std::process::ExitCode;
 
@@ -124,5 +125,5 @@ fn print_diagnostic(
                 .with_source_code(NamedSource::new(&source.name, source.text.clone()))
         }
     };
-    eprintln!("{report:?}");
+    say_error!("{report:?}");
 }

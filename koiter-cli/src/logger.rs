@@ -1,5 +1,6 @@
 //! The library's warnings on standard error.
 
+use crate::output::say_error;
 use log::{Level, LevelFilter, Log, Metadata, Record};
 
 struct Warnings;
@@ -11,7 +12,7 @@ impl Log for Warnings {
 
     fn log(&self, record: &Record<'_>) {
         if self.enabled(record.metadata()) {
-            eprintln!(
+            say_error!(
                 "{}: {}",
                 record.level().as_str().to_lowercase(),
                 record.args()

@@ -11,6 +11,7 @@ mod export;
 mod failure;
 mod logger;
 mod memory;
+mod output;
 mod pictures;
 mod probes;
 mod render;

@@ -1,5 +1,6 @@
 //! `koiter render`: a picture or a film of a result.
 
+use crate::output::say;
 use koiter::io::result::ResultReader;
 
 use crate::arguments::RenderArguments;
@@ -39,6 +40,6 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     } else {
         album.film(&arguments.output, arguments.fps, true)?;
     }
-    println!("made: {}", arguments.output.display());
+    say!("made: {}", arguments.output.display());
     Ok(())
 }

@@ -6,6 +6,7 @@ mod start;
 
 pub(crate) use start::start;
 
+use crate::output::{say, say_error};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -58,7 +59,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
     };
     if arguments.json {
         let json = serde_json::to_string(&recorder.summary).map_err(Failure::run)?;
-        println!("{json}");
+        say!("{json}");
     } else if !arguments.quiet {
         recorder.summary.print(&folder, &made);
     }
@@ -106,7 +107,7 @@ fn watch_for_interrupt() -> Arc<AtomicBool> {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(1);
         }
-        eprintln!("ending after this step; Ctrl-C again ends at once");
+        say_error!("ending after this step; Ctrl-C again ends at once");
     });
     interrupted
 }

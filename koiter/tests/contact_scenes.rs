@@ -484,10 +484,10 @@ fn a_shell_that_starts_inside_a_box_is_refused() {
 #[test]
 fn a_plane_that_is_to_turn_is_refused() {
     let mut plane = floor(-1.0);
-    plane.motion.rotation = Some(koiter::scene::model::Rotation {
+    plane.motion.rotation = Some(Rotation {
         pivot: Vec3::zeros(),
         axis: Vec3::x(),
-        angle: koiter::scene::model::Schedule {
+        angle: Schedule {
             times: vec![0.0, 1.0],
             values: vec![0.0, 1.0],
         },

@@ -1,5 +1,6 @@
 //! The figures of a run: a line of `stats.jsonl` a step, and `summary.json`.
 
+use crate::output::say;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -134,16 +135,19 @@ impl Summary {
             true => format!("smallest gap {:.3e} m", self.min_gap),
             false => "nothing came near anything".to_owned(),
         };
-        println!(
+        say!(
             "{} steps to t = {:.3} s in {:.1} s, {} Newton iterations",
-            self.steps, self.time, self.seconds, self.newton_iterations
+            self.steps,
+            self.time,
+            self.seconds,
+            self.newton_iterations
         );
         match self.intersections {
-            Some(count) => println!("{count} intersections; {gap}"),
-            None => println!("contact is off: intersections were not looked for"),
+            Some(count) => say!("{count} intersections; {gap}"),
+            None => say!("contact is off: intersections were not looked for"),
         }
         if let Some(bytes) = self.peak_memory_bytes {
-            println!(
+            say!(
                 "{} vertices, {} triangles, {} at most",
                 self.vertices,
                 self.faces,
@@ -152,12 +156,12 @@ impl Summary {
         }
         if let Value::Object(probes) = &self.probes {
             for (name, value) in probes {
-                println!("probe {name}: {value}");
+                say!("probe {name}: {value}");
             }
         }
-        println!("result: {}", folder.display());
+        say!("result: {}", folder.display());
         for path in made {
-            println!("made: {}", path.display());
+            say!("made: {}", path.display());
         }
     }
 }

@@ -1,0 +1,33 @@
+//! Lines for people and scripts, written so that a full disk or a reader that went away is no panic.
+
+use std::fmt::Arguments;
+use std::io::{ErrorKind, Write, stderr, stdout};
+
+/// Writes a line to standard output. A closed pipe ends the program quietly, anything else with status 1.
+pub(crate) fn line(text: Arguments<'_>) {
+    let Err(error) = writeln!(stdout(), "{text}") else {
+        return;
+    };
+    if error.kind() == ErrorKind::BrokenPipe {
+        std::process::exit(0);
+    }
+    error_line(format_args!("cannot write to standard output: {error}"));
+    std::process::exit(1);
+}
+
+/// Writes a line to standard error, if it can be written to.
+pub(crate) fn error_line(text: Arguments<'_>) {
+    let _ = writeln!(stderr(), "{text}");
+}
+
+/// `println!` that cannot panic.
+macro_rules! say {
+    ($($argument:tt)*) => { $crate::output::line(format_args!($($argument)*)) };
+}
+
+/// `eprintln!` that cannot panic.
+macro_rules! say_error {
+    ($($argument:tt)*) => { $crate::output::error_line(format_args!($($argument)*)) };
+}
+
+pub(crate) use {say, say_error};
