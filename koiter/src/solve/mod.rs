@@ -9,4 +9,4 @@ mod workspace;
 pub use cholesky::{Factorization, NotPositiveDefinite, SparseCholesky};
 pub use newton::{HessianChoice, NewtonOptions, NewtonReport, Problem, SolveError, minimize};
 pub use ordering::{NodeOrdering, nested_dissection};
-pub use workspace::LinearWorkspace;
+pub use workspace::{LinearWorkspace, WorkspaceHistory};

@@ -81,6 +81,16 @@ pub fn nested_dissection(pattern: &Pattern) -> NodeOrdering {
 }
 
 impl NodeOrdering {
+    /// Eliminates nodes in the order they are listed, each once.
+    pub(super) fn of(nodes: Vec<u32>) -> Self {
+        Self(nodes)
+    }
+
+    /// Position → node.
+    pub(super) fn nodes(&self) -> &[u32] {
+        &self.0
+    }
+
     /// The order of scalar unknowns, position → unknown, after a postorder of the elimination tree of `pattern` (which
     /// may couple more nodes than the pattern the order was made for).
     pub fn scalar_order(&self, pattern: &Pattern) -> Vec<u32> {

@@ -4,7 +4,21 @@ use std::sync::Arc;
 
 use super::cholesky::{Factorization, SparseCholesky};
 use super::ordering::{NodeOrdering, nested_dissection};
-use crate::assembly::{CoupledPairs, DofLayout, Energy, Pattern, PatternBuilder, SymmetricMatrix};
+use crate::assembly::{
+    CoupledPairs, DofLayout, Energy, NodeId, Pattern, PatternBuilder, SymmetricMatrix,
+};
+
+/// What a [`LinearWorkspace`] owes to the past: which contacts came before decides the order of elimination and the
+/// explicit zeros of the matrix, and with them the last bits of every solution.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WorkspaceHistory {
+    /// Couplings by contacts, column and row node with the column the smaller, sorted.
+    pub changing_pairs: Vec<[u32; 2]>,
+    /// The nodes in their order of elimination; empty before the first solve.
+    pub node_order: Vec<u32>,
+    /// Entries of the factor when the order was made.
+    pub entries_at_ordering: u64,
+}
 
 /// Pattern, matrix and factor, kept between steps.
 #[derive(Default)]
@@ -34,6 +48,42 @@ impl LinearWorkspace {
         self.matrix.as_ref()
     }
 
+    /// What the coming solves owe to those so far.
+    pub fn history(&self) -> WorkspaceHistory {
+        let order = self.ordering.as_ref().map(NodeOrdering::nodes);
+        WorkspaceHistory {
+            changing_pairs: (self.changing_pairs.iter().map(|(a, b)| [a.0, b.0])).collect(),
+            node_order: order.unwrap_or_default().to_vec(),
+            entries_at_ordering: self.entries_at_ordering as u64,
+        }
+    }
+
+    /// A workspace that goes on as the one did whose history it is.
+    ///
+    /// # Errors
+    /// A history that is not of a system with these unknowns, in words.
+    pub fn with_history(history: &WorkspaceHistory, layout: &DofLayout) -> Result<Self, String> {
+        let num_nodes = layout.num_solved_nodes() as u32;
+        let mut pairs = PatternBuilder::default();
+        for &[column, row] in &history.changing_pairs {
+            if column >= row || row >= layout.num_nodes() as u32 {
+                return Err(format!("it couples nodes {column} and {row}"));
+            }
+            pairs.couple([NodeId(column), NodeId(row)]);
+        }
+        let mut sorted = history.node_order.clone();
+        sorted.sort_unstable();
+        if !sorted.is_empty() && !sorted.iter().copied().eq(0..num_nodes) {
+            return Err(format!("its order is not one of {num_nodes} nodes"));
+        }
+        Ok(Self {
+            changing_pairs: pairs.finish(),
+            ordering: (!sorted.is_empty()).then(|| NodeOrdering::of(history.node_order.clone())),
+            entries_at_ordering: history.entries_at_ordering as usize,
+            ..Self::default()
+        })
+    }
+
     /// Makes the pattern hold all couplings of the energies at `q`; keeps it if it does already.
     pub fn update_pattern(
         &mut self,
@@ -51,21 +101,24 @@ impl LinearWorkspace {
             }
             builder.finish()
         };
-        let new_topology = self.static_pairs.is_none();
         let static_pairs = self
             .static_pairs
             .get_or_insert_with(|| collect(energies, false));
         let needed = collect(energies, true);
-        if !new_topology && self.changing_pairs.contains_all(&needed) {
-            return;
-        }
-        // Couplings of earlier contacts are kept as explicit zeros while they are few: contacts flicker.
-        let kept = if self.changing_pairs.len() <= 2 * needed.len() {
-            &self.changing_pairs
+        if self.changing_pairs.contains_all(&needed) {
+            // After `with_history` the couplings are there before the matrix is.
+            if self.matrix.is_some() {
+                return;
+            }
         } else {
-            &CoupledPairs::default()
-        };
-        self.changing_pairs = kept.union(&needed);
+            // Couplings of earlier contacts are kept as explicit zeros while they are few: contacts flicker.
+            let kept = if self.changing_pairs.len() <= 2 * needed.len() {
+                &self.changing_pairs
+            } else {
+                &CoupledPairs::default()
+            };
+            self.changing_pairs = kept.union(&needed);
+        }
         let pattern = Arc::new(Pattern::new(
             layout,
             &static_pairs.union(&self.changing_pairs),
@@ -73,11 +126,12 @@ impl LinearWorkspace {
         for energy in energies.iter_mut() {
             energy.bind(&pattern);
         }
+        let is_first = self.ordering.is_none();
         let ordering = self
             .ordering
             .get_or_insert_with(|| nested_dissection(&pattern));
         self.factor.analyze(&pattern, ordering);
-        if new_topology {
+        if is_first {
             self.entries_at_ordering = self.factor.factor_entries();
         } else if self.factor.factor_entries() as f64
             > REORDER_GROWTH * self.entries_at_ordering as f64
