@@ -58,8 +58,8 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "T")]
     pub(crate) until: Option<f64>,
     /// Number of threads [default: all cores]; the result is the same bits for any number
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub(crate) threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = parse_threads)]
+    pub(crate) threads: Option<usize>,
     /// Print nothing but warnings and errors
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -67,13 +67,13 @@ pub(crate) struct RunArguments {
     #[arg(long)]
     pub(crate) json: bool,
     /// Make a picture of the end and a film when the run is over (the default)
-    #[arg(long, overrides_with = "no_film")]
+    #[arg(long, conflicts_with = "no_film")]
     pub(crate) film: bool,
     /// Make no picture and no film
     #[arg(long)]
     pub(crate) no_film: bool,
     /// If surfaces intersect at the start, write them to this PLY file with the offending faces coloured
-    #[arg(long, value_name = "FILE.ply")]
+    #[arg(long, value_name = "FILE.ply", value_parser = parse_ply)]
     pub(crate) debug_mesh: Option<PathBuf>,
 }
 
@@ -89,7 +89,7 @@ pub(crate) struct CheckArguments {
     #[arg(long)]
     pub(crate) json: bool,
     /// If surfaces intersect at the start, write them to this PLY file with the offending faces coloured
-    #[arg(long, value_name = "FILE.ply")]
+    #[arg(long, value_name = "FILE.ply", value_parser = parse_ply)]
     pub(crate) debug_mesh: Option<PathBuf>,
 }
 
@@ -163,6 +163,21 @@ pub(crate) enum ExportFormat {
     Ply,
     /// VTK with fields; a series and its .pvd unless --frame is given
     Vtu,
+}
+
+fn parse_threads(text: &str) -> Result<usize, String> {
+    let threads = text.parse().ok().filter(|&threads| threads > 0);
+    threads.ok_or_else(|| "write a whole number, 1 or larger".to_owned())
+}
+
+fn parse_ply(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_ply = path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("ply"));
+    is_ply
+        .then_some(path)
+        .ok_or_else(|| "the format is PLY: the name must end in .ply".to_owned())
 }
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {

@@ -34,7 +34,7 @@ impl<'a> ProbeWriter<'a> {
     }
 
     /// Measures and writes a row; it is on its way to the disk when this returns.
-    pub(crate) fn write(&mut self, simulation: &Simulation) -> io::Result<()> {
+    pub(crate) fn write(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
         let state = State(simulation);
         self.last = self
             .probes
@@ -46,7 +46,7 @@ impl<'a> ProbeWriter<'a> {
         };
         // `{}` writes every digit that is needed to read the same number again.
         let values: Vec<String> = self.last.iter().flatten().map(f64::to_string).collect();
-        let row = format!("{},{}\n", simulation.time(), values.join(","));
+        let row = format!("{time},{}\n", values.join(","));
         file.write_all(row.as_bytes())
     }
 

@@ -24,15 +24,12 @@ use crate::pictures;
 use crate::probes::ProbeWriter;
 use crate::scene_source::{LoadedScene, load};
 use progress::Progress;
-use record::{StatsLine, Summary};
+use record::{StatsLine, Summary, decimal_time};
 
 /// Runs a scene.
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if let Some(threads) = arguments.threads {
-        // It fails only when the pool exists already, which nothing before this makes.
-        let _ = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.into())
-            .build_global();
+        use_threads(threads)?;
     }
     let loaded = load(&arguments.scene)?;
     let num_steps = num_steps(&loaded.scene, arguments.until)?;
@@ -77,9 +74,24 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
             recorder.unconverged, recorder.summary.steps
         );
         return Err(Failure::run(message)
-            .with_help("try a smaller time.dt, or a larger solver.max_iterations"));
+            .with_help("stats.jsonl has the diagnosis of each; try a smaller time.dt, or a larger solver.max_iterations"));
     }
     Ok(())
+}
+
+/// Threads beyond a few a core only cost memory, and thousands exhaust the machine.
+fn use_threads(threads: usize) -> Result<(), Failure> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let most = (4 * cores).max(64);
+    if threads > most {
+        let message =
+            format!("--threads {threads}: at most {most} on this machine of {cores} cores");
+        return Err(Failure::input(message));
+    }
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|error| Failure::run(format!("cannot start {threads} threads: {error}")))
 }
 
 fn num_steps(scene: &Scene, until: Option<f64>) -> Result<usize, Failure> {
@@ -122,7 +134,10 @@ fn advance(
     let mut simulation = simulation;
     for step in 1..=num_steps {
         let report = match simulation.step(recorder.scene.dt) {
-            Ok(report) => report,
+            Ok(report) => StepReport {
+                time: decimal_time(report.step, recorder.scene.dt),
+                ..report
+            },
             Err(error) => {
                 recorder.note_error(&error);
                 return Err(Failure::run(error));
@@ -198,8 +213,11 @@ impl<'a> Recorder<'a> {
         self.summary.add(report);
         if !report.converged {
             self.unconverged += 1;
-            let diagnosis = report.diagnosis.as_deref().unwrap_or("no diagnosis");
-            log::warn!(target: "koiter", "step {} did not converge: {diagnosis}", report.step);
+            // Once a run: the others are counted at its end, and told one by one in stats.jsonl.
+            if self.unconverged == 1 {
+                let diagnosis = report.diagnosis.as_deref().unwrap_or("no diagnosis");
+                log::warn!(target: "koiter", "step {} did not converge: {diagnosis}", report.step);
+            }
         }
         Ok(())
     }
@@ -212,7 +230,7 @@ impl<'a> Recorder<'a> {
             .filter(|(name, _)| wanted(name));
         let frame = Frame {
             step: simulation.step_count() as u64,
-            time: simulation.time(),
+            time: decimal_time(simulation.step_count(), self.scene.dt),
             positions: simulation.display_positions(),
             vertex_fields: Vec::new(),
             face_fields: fields
@@ -226,8 +244,9 @@ impl<'a> Recorder<'a> {
     }
 
     fn write_probes(&mut self, simulation: &Simulation) -> Result<(), Failure> {
+        let time = decimal_time(simulation.step_count(), self.scene.dt);
         self.probes
-            .write(simulation)
+            .write(simulation, time)
             .map_err(|error| Failure::run(format!("cannot write probes.csv: {error}")))
     }
 

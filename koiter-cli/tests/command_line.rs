@@ -70,11 +70,14 @@ fn help_has_examples_for_every_verb() {
 
 #[test]
 fn wrong_arguments_have_status_2() {
-    let cases: [&[&str]; 7] = [
+    let cases: [&[&str]; 10] = [
         &[],
         &["fly"],
         &["run"],
         &["run", "sphere-drape", "--threads", "0"],
+        &["run", "sphere-drape", "--threads", "65535"],
+        &["run", "sphere-drape", "--film", "--no-film"],
+        &["check", "sphere-drape", "--debug-mesh", "start.obj"],
         &["run", "sphere-drape", "--resume"],
         &["render", "x", "-o", "a.png", "--size", "12"],
         &["export", "x", "--to", "docx", "-o", "a"],
@@ -465,6 +468,30 @@ fn reactions_carry_the_weight() {
         "{force} N against {weight} N"
     );
     let tip = summary["probes"]["tip"][2].as_f64().unwrap();
+    // Statics: nothing moves, but the clamp is a spring.
+    let stats = std::fs::read_to_string(format!("{out}/stats.jsonl")).unwrap();
+    let lines: Vec<Value> = stats
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let times: Vec<&Value> = lines.iter().map(|line| &line["time"]).collect();
+    assert_eq!(*times[2], 0.3, "not 0.30000000000000004");
+    let energies = lines[9]["energies"].as_object().unwrap();
+    let names: Vec<&str> = energies.keys().map(String::as_str).collect();
+    assert_eq!(names, ["bending", "clamps", "gravity", "membrane"]);
+    assert!(energies["clamps"].as_f64().unwrap() > 0.0);
     // The heavy elastica drops by 0.1400 m; twelve cells come within half a per cent.
     assert!((tip / -0.1400 - 1.0).abs() < 0.005, "{tip}");
+}
+
+#[test]
+fn steps_that_do_not_converge_are_warned_about_once_and_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run_small(folder.path(), &["--set", "solver.max_iterations=1"]);
+    let text = stderr(&output);
+    assert_eq!(status(&output), 1, "{text}");
+    assert_eq!(text.matches("did not converge:").count(), 1, "{text}");
+    assert!(text.contains("5 of 5 steps did not converge"), "{text}");
+    let stats = std::fs::read_to_string(folder.path().join("out/stats.jsonl")).unwrap();
+    assert_eq!(stats.matches("\"diagnosis\"").count(), 5);
 }

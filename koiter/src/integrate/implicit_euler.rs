@@ -39,7 +39,7 @@ impl Integrator for ImplicitEuler {
         };
         let mut q = state.q.clone();
         let tolerance = self.velocity_tolerance * dt;
-        let newton = system
+        let solved = system
             .solve(
                 &mut q,
                 Some(&mut inertia),
@@ -55,7 +55,7 @@ impl Integrator for ImplicitEuler {
             .collect();
         let report = StepReport {
             dt,
-            residual: newton.last_step / dt,
+            residual: solved.newton.last_step / dt,
             ..Default::default()
         };
         let next = State {
@@ -64,6 +64,6 @@ impl Integrator for ImplicitEuler {
             time: state.time + dt,
             step,
         };
-        system.finish(state, next, newton, report)
+        system.finish(state, next, solved, report)
     }
 }

@@ -19,7 +19,7 @@ impl Integrator for QuasiStatic {
     ) -> Result<StepReport, StepError> {
         let step = state.step + 1;
         let mut q = state.q.clone();
-        let newton = system
+        let solved = system
             .solve(
                 &mut q,
                 None,
@@ -31,7 +31,7 @@ impl Integrator for QuasiStatic {
         let velocities = vec![0.0; q.len()];
         let report = StepReport {
             dt,
-            residual: newton.last_step,
+            residual: solved.newton.last_step,
             ..Default::default()
         };
         let next = State {
@@ -40,6 +40,6 @@ impl Integrator for QuasiStatic {
             time: state.time + dt,
             step,
         };
-        system.finish(state, next, newton, report)
+        system.finish(state, next, solved, report)
     }
 }

@@ -17,9 +17,9 @@ pub struct StepReport {
     pub converged: bool,
     /// The last Newton step, measured on the offset surfaces and divided by `dt` [m/s] (statics: [m]).
     pub residual: f64,
-    /// Energies by name [J] at the end of the step.
+    /// Energies by name [J] at the end of the step; `friction` is what the step's sliding took, not stored energy.
     pub energies: Vec<(&'static str, f64)>,
-    /// Seconds spent, by part.
+    /// Seconds spent, by part; the names are snake_case, like all keys of results.
     pub seconds: Vec<(&'static str, f64)>,
     /// Active contact pairs.
     pub contacts: usize,

@@ -122,6 +122,8 @@ pub struct System {
     pub gravity: Gravity,
     /// Lumped masses [kg] and rotational inertias [kg·m²] of the solved unknowns.
     pub masses: Vec<f64>,
+    /// Whether there is motion: statics has no kinetic energy to report.
+    pub is_dynamic: bool,
     /// Contact, unless it is off.
     pub contact: Option<Contact>,
     /// Speed below which friction is smoothed [m/s].
@@ -134,6 +136,13 @@ pub struct System {
     pub max_iterations: usize,
 }
 
+/// What a minimisation tells.
+pub(super) struct Solved {
+    pub(super) newton: NewtonReport,
+    /// The potential of friction at the end [J]: what the step's sliding takes. `None` without contact.
+    friction: Option<f64>,
+}
+
 impl System {
     /// Minimises the sum of energies from `q`, with friction against the motion since `start`, and fills the report's
     /// common part.
@@ -144,7 +153,7 @@ impl System {
         sliding: (&[f64], f64),
         prescribed: &Prescribed,
         tolerance: f64,
-    ) -> Result<NewtonReport, SolveError> {
+    ) -> Result<Solved, SolveError> {
         let (start, sliding_dt) = sliding;
         let mut friction = Friction {
             contacts: Vec::new(),
@@ -182,10 +191,12 @@ impl System {
             max_iterations: self.max_iterations,
             hessian: HessianChoice::Projected,
         };
-        minimize(&mut problem, &options, &mut self.workspace, q)
+        let newton = minimize(&mut problem, &options, &mut self.workspace, q)?;
+        let friction = self.contact.is_some().then(|| friction.value(q));
+        Ok(Solved { newton, friction })
     }
 
-    /// Energies by name at a state, with the kinetic energy.
+    /// Energies by name at a state; the kinetic energy only where there is motion, that of clamps where there are some.
     pub fn energies(&self, state: &State) -> Vec<(&'static str, f64)> {
         let mut energies: Vec<(&'static str, f64)> = Vec::new();
         let mut add =
@@ -196,14 +207,19 @@ impl System {
         for energy in &self.elastic {
             add(energy.name(), energy.value(&state.q));
         }
+        if !self.clamps.local().edges.is_empty() {
+            add(self.clamps.name(), self.clamps.value(&state.q));
+        }
         add("gravity", self.gravity.value(&state.q));
-        let kinetic = self
-            .masses
-            .iter()
-            .zip(&state.velocities)
-            .map(|(m, v)| 0.5 * m * v * v)
-            .sum();
-        add("kinetic", kinetic);
+        if self.is_dynamic {
+            let kinetic = self
+                .masses
+                .iter()
+                .zip(&state.velocities)
+                .map(|(m, v)| 0.5 * m * v * v)
+                .sum();
+            add("kinetic", kinetic);
+        }
         if let Some(contact) = &self.contact {
             add("contact", contact.value(&state.q));
         }
@@ -215,9 +231,10 @@ impl System {
         &mut self,
         state: &mut State,
         next: State,
-        newton: NewtonReport,
+        solved: Solved,
         mut report: StepReport,
     ) -> Result<StepReport, StepError> {
+        let Solved { newton, friction } = solved;
         let clock = std::time::Instant::now();
         let mut seconds = newton.seconds.clone();
         if let Some(contact) = &mut self.contact {
@@ -249,6 +266,9 @@ impl System {
         report.converged = newton.converged;
         report.seconds = seconds;
         report.energies = self.energies(&next);
+        report
+            .energies
+            .extend(friction.map(|taken| ("friction", taken)));
         if !newton.converged {
             report.diagnosis = Some(self.diagnose(&newton, &next.q));
         }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::clamps::Clamps;
-use super::model::{BendingModel, Model, Obstacle, ObstacleShape, Shell};
+use super::model::{BendingModel, IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::contact::{CollisionBody, CollisionMesh, CollisionPlane, Contact, StartError};
@@ -164,6 +164,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         elastic,
         gravity,
         masses,
+        is_dynamic: model.integrator == IntegratorKind::ImplicitEuler,
         contact,
         friction_speed: model.contact.friction_speed,
         space: OffsetSurfaces { shells: parts },

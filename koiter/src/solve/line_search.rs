@@ -53,10 +53,10 @@ pub(super) fn line_search(
             report.limiter = energy.step_limiter();
         }
     }
-    report.spend("collision detection", start);
+    report.spend("collision_detection", start);
     let start = Instant::now();
     let steps = search(problem, q, line, bound * line.reach, report);
-    report.spend("line search", start);
+    report.spend("line_search", start);
     steps
 }
 

@@ -264,7 +264,7 @@ fn newton_step(
         let start = Instant::now();
         let matrix = workspace.matrix.as_ref().expect("the matrix was assembled");
         let positive = workspace.factor.factorize(matrix).is_ok();
-        report.spend("linear solve", start);
+        report.spend("linear_solve", start);
         pace.record_exact(positive);
         if !positive {
             report.indefinite += 1;
@@ -290,7 +290,7 @@ fn newton_step(
     }
     workspace.factor.solve(&mut rhs);
     direction[..solved].copy_from_slice(&rhs);
-    report.spend("linear solve", start);
+    report.spend("linear_solve", start);
     let slope = gradient.iter().zip(&direction).map(|(g, d)| g * d).sum();
     Ok(NewtonStep {
         direction,
