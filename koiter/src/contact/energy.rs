@@ -110,6 +110,12 @@ impl Contact {
         self.kappa = kappa;
     }
 
+    /// Makes the coming search for pairs independent of those before: the shape of the trees decides the order of the
+    /// pairs, and with it the last bits of every sum over them.
+    pub fn forget_search(&mut self) {
+        self.candidates = Candidates::default();
+    }
+
     pub(super) fn positions(&self, q: &[f64]) -> Vec<Vec3> {
         (0..self.mesh.vertices.len() as u32)
             .map(|v| self.mesh.position(v, q))

@@ -162,6 +162,7 @@ impl System {
             layout: self.layout.clone(),
         };
         if let Some(contact) = &mut self.contact {
+            contact.forget_search();
             contact.prepare(q);
             contact.refresh(q);
             contact.lag(&mut friction);

@@ -12,3 +12,4 @@ pub mod write;
 
 pub use atomic_file::write_atomically;
 pub use read::{RawMesh, ReadError, read_mesh};
+pub use result::Checkpoint;

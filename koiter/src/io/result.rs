@@ -5,6 +5,7 @@
 //! topology.bin      the faces of all parts
 //! frames/00000.bin  step, time, positions, fields; 00001.bin, …
 //! stats.jsonl       one JSON object a step
+//! checkpoint.bin    where an interrupted run goes on
 //! summary.json      one JSON object, at the end of the run
 //! ```
 //!
@@ -12,6 +13,7 @@
 //! binary files are little-endian, each such file ends in a CRC-32 of what stands before. Files are written under
 //! another name and renamed when they are complete, so a run that is killed leaves whole frames only.
 
+mod checkpoint;
 mod error;
 mod frame;
 mod manifest;
@@ -19,6 +21,7 @@ mod reader;
 mod topology_file;
 mod writer;
 
+pub use checkpoint::{Checkpoint, CheckpointError, Totals};
 pub use error::ResultError;
 pub use frame::{Field, Frame, FrameInfo};
 pub use manifest::{Manifest, Part, PartKind, UpAxis};
@@ -31,6 +34,7 @@ const MANIFEST: &str = "manifest.json";
 const TOPOLOGY: &str = "topology.bin";
 const FRAMES: &str = "frames";
 const STATS: &str = "stats.jsonl";
+const CHECKPOINT: &str = "checkpoint.bin";
 const SUMMARY: &str = "summary.json";
 
 fn frame_path(folder: &Path, index: usize) -> PathBuf {

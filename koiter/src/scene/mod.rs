@@ -7,9 +7,11 @@
 mod assemble;
 mod clamps;
 mod display;
+mod fingerprint;
 pub mod model;
 pub mod schedule;
 mod simulation;
+mod snapshot;
 
 #[cfg(feature = "serde")]
 mod build;
@@ -36,6 +38,7 @@ pub use self::{
     assemble::BuildError,
     display::PartTopology,
     simulation::{Simulation, SystemStats},
+    snapshot::{RestoreError, Snapshot},
 };
 #[cfg(feature = "serde")]
 pub use self::{

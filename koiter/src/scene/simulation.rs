@@ -13,14 +13,14 @@ use crate::integrate::{
 /// A model with its state, advanced step by step.
 pub struct Simulation {
     model: Model,
-    system: System,
-    state: State,
+    pub(super) system: System,
+    pub(super) state: State,
     integrator: Box<dyn Integrator>,
     obstacles: Vec<(Dof, Vec<Vec3>)>,
     clamps: Clamps,
     parts: Vec<PartTopology>,
     /// Mass times acceleration of the last step [N]; zero in statics.
-    momentum_rates: Vec<f64>,
+    pub(super) momentum_rates: Vec<f64>,
 }
 
 /// Sizes of a simulation.
@@ -100,11 +100,7 @@ impl Simulation {
 
     fn step_in_pool(&mut self, dt: f64) -> Result<StepReport, StepError> {
         let time = self.state.time + dt;
-        if let Some(scale) = &self.model.gravity_scale {
-            self.system.gravity.acceleration = self.model.gravity * scale.at(time);
-        }
-        self.clamps
-            .advance(&self.model, time, self.system.clamps.local_mut());
+        self.apply_schedules(time);
         let prescribed = self.prescribed_at(time);
         let before = self.state.velocities.clone();
         let report = self
@@ -126,6 +122,15 @@ impl Simulation {
                 .collect();
         }
         Ok(report)
+    }
+
+    /// Gravity and clamps as they are at a time [s].
+    pub(super) fn apply_schedules(&mut self, time: f64) {
+        if let Some(scale) = &self.model.gravity_scale {
+            self.system.gravity.acceleration = self.model.gravity * scale.at(time);
+        }
+        self.clamps
+            .advance(&self.model, time, self.system.clamps.local_mut());
     }
 
     fn prescribed_at(&self, time: f64) -> Prescribed {

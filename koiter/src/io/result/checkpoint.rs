@@ -1,0 +1,267 @@
+//! Where a run can be taken up again: `checkpoint.bin`.
+//!
+//! ```text
+//! "KOITERCP"  u32 format  text version of Koiter  text scene
+//! list of bodies: text name, u64 fingerprint of the mesh
+//! u64 step  f64 time  list of f64: q, its rates, momentum rates
+//! u8 1 with contact, else 0  f64 barrier stiffness
+//! list of u32 × 2: couplings by contacts  list of u32: elimination order  u64 factor entries when it was made
+//! u64 × 3 Newton iterations, steps not converged, intersections  f64 × 2 smallest gap, seconds
+//! list of parts of the run: text name, f64 seconds  list of f64: last values of the probes
+//! u32 CRC-32
+//! ```
+//!
+//! Numbers are little-endian; a text is its length as u32 and its bytes, a list its length as u64 and its items.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use super::CHECKPOINT;
+use super::error::{ResultError, while_trying};
+use super::topology_file::checked_body;
+use crate::integrate::State;
+use crate::io::bytes::{ByteReader, Endian};
+use crate::io::checksum::crc32;
+use crate::scene::Snapshot;
+use crate::solve::WorkspaceHistory;
+
+const MAGIC: &[u8; 8] = b"KOITERCP";
+const FORMAT: u32 = 1;
+
+/// All that is needed to go on with a run to the same bits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint {
+    /// Version of Koiter that wrote it: another may round otherwise.
+    pub version: String,
+    /// The scene as it was run, overrides included.
+    pub scene_text: String,
+    /// Name and fingerprint of the mesh of each body.
+    pub bodies: Vec<(String, u64)>,
+    /// What the simulation owes to its past.
+    pub snapshot: Snapshot,
+    /// What the run has added up so far.
+    pub totals: Totals,
+}
+
+/// Sums over the steps of a run, for its summary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Totals {
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Steps that did not converge.
+    pub unconverged: u64,
+    /// Intersections found.
+    pub intersections: u64,
+    /// Smallest gap between surfaces [m]; infinity when nothing was near.
+    pub min_gap: f64,
+    /// Wall time [s].
+    pub seconds: f64,
+    /// Wall time of steps by part [s].
+    pub seconds_by_part: Vec<(String, f64)>,
+    /// Last values of all probes, in the order of their columns.
+    pub probes: Vec<f64>,
+}
+
+impl Default for Totals {
+    fn default() -> Self {
+        Self {
+            newton_iterations: 0,
+            unconverged: 0,
+            intersections: 0,
+            min_gap: f64::INFINITY,
+            seconds: 0.0,
+            seconds_by_part: Vec::new(),
+            probes: Vec::new(),
+        }
+    }
+}
+
+/// Bytes that are no checkpoint, or a damaged one, or one of another format.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{reason}")]
+pub struct CheckpointError {
+    /// What is wrong.
+    pub reason: String,
+}
+
+impl Checkpoint {
+    /// The checkpoint of a result folder, if there is one.
+    ///
+    /// # Errors
+    /// A file that is damaged or of another format, a refusal of the system.
+    pub fn read(folder: &Path) -> Result<Option<Self>, ResultError> {
+        let path = folder.join(CHECKPOINT);
+        match fs::read(&path) {
+            Ok(bytes) => Self::from_bytes(&bytes)
+                .map(Some)
+                .map_err(|CheckpointError { reason }| ResultError::Broken { path, reason }),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(while_trying("read", &path)(error)),
+        }
+    }
+
+    /// Reads a checkpoint from the bytes of its file, whatever they are.
+    ///
+    /// # Errors
+    /// Anything but a whole checkpoint of this format.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
+        let refuse = |reason| CheckpointError { reason };
+        let body = checked_body(bytes, MAGIC, FORMAT).map_err(refuse)?;
+        let mut reader = ByteReader::new(body, Endian::Little);
+        let checkpoint = read_body(&mut reader)
+            .ok_or_else(|| refuse("its lengths do not fit each other".to_string()))?;
+        match reader.remaining() {
+            0 => Ok(checkpoint),
+            left => Err(refuse(format!("{left} bytes are left over at its end"))),
+        }
+    }
+
+    /// The bytes of the file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let Self {
+            snapshot, totals, ..
+        } = self;
+        let mut out = Bytes(Vec::with_capacity(
+            1000 + self.scene_text.len() + 8 * 3 * snapshot.state.q.len(),
+        ));
+        out.0.extend(MAGIC);
+        out.0.extend(FORMAT.to_le_bytes());
+        out.text(&self.version);
+        out.text(&self.scene_text);
+        out.list(&self.bodies, |out, (name, fingerprint)| {
+            out.text(name);
+            out.u64(*fingerprint);
+        });
+        out.u64(snapshot.state.step as u64);
+        out.f64(snapshot.state.time);
+        out.numbers(&snapshot.state.q);
+        out.numbers(&snapshot.state.velocities);
+        out.numbers(&snapshot.momentum_rates);
+        out.0.push(snapshot.kappa.is_some().into());
+        out.f64(snapshot.kappa.unwrap_or(0.0));
+        let WorkspaceHistory {
+            changing_pairs,
+            node_order,
+            entries_at_ordering,
+        } = &snapshot.solver;
+        out.list(changing_pairs, |out, [a, b]| {
+            out.u32(*a);
+            out.u32(*b);
+        });
+        out.list(node_order, |out, node| out.u32(*node));
+        out.u64(*entries_at_ordering);
+        out.u64(totals.newton_iterations);
+        out.u64(totals.unconverged);
+        out.u64(totals.intersections);
+        out.f64(totals.min_gap);
+        out.f64(totals.seconds);
+        out.list(&totals.seconds_by_part, |out, (name, seconds)| {
+            out.text(name);
+            out.f64(*seconds);
+        });
+        out.numbers(&totals.probes);
+        let checksum = crc32(&out.0);
+        out.u32(checksum);
+        out.0
+    }
+}
+
+struct Bytes(Vec<u8>);
+
+impl Bytes {
+    fn u32(&mut self, value: u32) {
+        self.0.extend(value.to_le_bytes());
+    }
+
+    fn u64(&mut self, value: u64) {
+        self.0.extend(value.to_le_bytes());
+    }
+
+    fn f64(&mut self, value: f64) {
+        self.0.extend(value.to_le_bytes());
+    }
+
+    fn text(&mut self, text: &str) {
+        self.u32(text.len() as u32);
+        self.0.extend(text.as_bytes());
+    }
+
+    fn list<T>(&mut self, items: &[T], write: impl Fn(&mut Self, &T)) {
+        self.u64(items.len() as u64);
+        items.iter().for_each(|item| write(self, item));
+    }
+
+    fn numbers(&mut self, values: &[f64]) {
+        self.list(values, |out, value| out.f64(*value));
+    }
+}
+
+fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
+    let version = text(reader)?;
+    let scene_text = text(reader)?;
+    let bodies = list(reader, 12, |reader| Some((text(reader)?, reader.u64()?)))?;
+    let step = usize::try_from(reader.u64()?).ok()?;
+    let time = reader.f64()?;
+    let state = State {
+        q: numbers(reader)?,
+        velocities: numbers(reader)?,
+        time,
+        step,
+    };
+    let momentum_rates = numbers(reader)?;
+    let has_contact = reader.u8()?;
+    let kappa = reader.f64()?;
+    let solver = WorkspaceHistory {
+        changing_pairs: list(reader, 8, |reader| Some([reader.u32()?, reader.u32()?]))?,
+        node_order: list(reader, 4, ByteReader::u32)?,
+        entries_at_ordering: reader.u64()?,
+    };
+    let totals = Totals {
+        newton_iterations: reader.u64()?,
+        unconverged: reader.u64()?,
+        intersections: reader.u64()?,
+        min_gap: reader.f64()?,
+        seconds: reader.f64()?,
+        seconds_by_part: list(reader, 12, |reader| Some((text(reader)?, reader.f64()?)))?,
+        probes: numbers(reader)?,
+    };
+    let snapshot = Snapshot {
+        state,
+        momentum_rates,
+        kappa: (has_contact == 1).then_some(kappa),
+        solver,
+    };
+    Some(Checkpoint {
+        version,
+        scene_text,
+        bodies,
+        snapshot,
+        totals,
+    })
+}
+
+fn text(reader: &mut ByteReader) -> Option<String> {
+    let length = reader.u32()? as usize;
+    Some(str::from_utf8(reader.take(length)?).ok()?.to_owned())
+}
+
+/// A list of items of at least `width` bytes each; its length is not trusted with memory that the file does not have.
+fn list<'a, T>(
+    reader: &mut ByteReader<'a>,
+    width: usize,
+    read: impl Fn(&mut ByteReader<'a>) -> Option<T>,
+) -> Option<Vec<T>> {
+    let count = usize::try_from(reader.u64()?).ok()?;
+    if count.checked_mul(width)? > reader.remaining() {
+        return None;
+    }
+    (0..count).map(|_| read(reader)).collect()
+}
+
+fn numbers(reader: &mut ByteReader) -> Option<Vec<f64>> {
+    list(reader, 8, ByteReader::f64)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,82 @@
+use super::*;
+
+fn checkpoint() -> Checkpoint {
+    Checkpoint {
+        version: "0.1.0".into(),
+        scene_text: "title = \"é\"\n".into(),
+        bodies: vec![("cloth".into(), 7), ("ball".into(), u64::MAX)],
+        snapshot: Snapshot {
+            state: State {
+                q: vec![0.1, -1e-300, 3.0],
+                velocities: vec![0.0, -0.0, f64::MIN_POSITIVE],
+                time: 1.0 / 3.0,
+                step: 12,
+            },
+            momentum_rates: vec![1.5],
+            kappa: Some(1e5),
+            solver: WorkspaceHistory {
+                changing_pairs: vec![[0, 1], [0, 7]],
+                node_order: vec![2, 0, 1],
+                entries_at_ordering: 99,
+            },
+        },
+        totals: Totals {
+            newton_iterations: 40,
+            seconds_by_part: vec![("contact".into(), 0.25)],
+            probes: vec![0.5, 2.5],
+            ..Totals::default()
+        },
+    }
+}
+
+#[test]
+fn what_was_written_is_read_back() {
+    let mut written = checkpoint();
+    assert_eq!(
+        Checkpoint::from_bytes(&written.to_bytes()).unwrap(),
+        written
+    );
+    written.snapshot.kappa = None;
+    assert_eq!(
+        Checkpoint::from_bytes(&written.to_bytes()).unwrap(),
+        written
+    );
+}
+
+#[test]
+fn every_cut_and_every_flipped_bit_is_noticed() {
+    let good = checkpoint().to_bytes();
+    for at in 0..good.len() {
+        assert!(Checkpoint::from_bytes(&good[..at]).is_err(), "cut at {at}");
+        for bit in 0..8 {
+            let mut bad = good.clone();
+            bad[at] ^= 1 << bit;
+            assert!(Checkpoint::from_bytes(&bad).is_err(), "bit {bit} of {at}");
+        }
+    }
+}
+
+#[test]
+fn lengths_are_not_trusted_even_under_an_honest_checksum() {
+    let good = checkpoint().to_bytes();
+    let end = good.len() - 4;
+    let mut refused = 0;
+    for at in 12..end {
+        let mut bad = good.clone();
+        let width = 8.min(end - at);
+        bad[at..at + width].fill(0x7f);
+        let checksum = crc32(&bad[..end]).to_le_bytes();
+        bad[end..].copy_from_slice(&checksum);
+        // Values may be anything; a length that does not fit must not be followed.
+        refused += usize::from(Checkpoint::from_bytes(&bad).is_err());
+    }
+    assert!(refused > 50, "only {refused} refused");
+}
+
+#[test]
+fn another_format_is_named() {
+    let mut bytes = checkpoint().to_bytes();
+    bytes[8] = 2;
+    let error = Checkpoint::from_bytes(&bytes).unwrap_err().to_string();
+    assert!(error.contains("version 2"), "{error}");
+}

@@ -1,0 +1,88 @@
+//! What a simulation owes to its past, so that it can be left and taken up again to the same bits.
+
+use super::simulation::Simulation;
+use crate::assembly::Energy;
+use crate::integrate::State;
+use crate::solve::{LinearWorkspace, WorkspaceHistory};
+
+/// Everything of a simulation that its model does not say: a new simulation of the same model, restored from it, takes
+/// the same steps as the old one, bit for bit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapshot {
+    /// Positions, edge angles, their rates, time, number of steps.
+    pub state: State,
+    /// Mass times acceleration of the last step [N], for reactions.
+    pub momentum_rates: Vec<f64>,
+    /// Barrier stiffness [J/m²], which grows where gaps shrink; `None` where contact is off.
+    pub kappa: Option<f64>,
+    /// What the linear solver keeps between steps.
+    pub solver: WorkspaceHistory,
+}
+
+/// A snapshot is not of this model.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the saved state does not fit the scene: {reason}")]
+pub struct RestoreError {
+    /// What does not fit.
+    pub reason: String,
+}
+
+impl Simulation {
+    /// What this simulation owes to its past.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            state: self.state.clone(),
+            momentum_rates: self.momentum_rates.clone(),
+            kappa: self.system.contact.as_ref().map(|contact| contact.kappa()),
+            solver: self.system.workspace.history(),
+        }
+    }
+
+    /// Takes up what a simulation of the same model left.
+    ///
+    /// # Errors
+    /// A snapshot of other sizes, or with values that are not finite; the simulation is then as it was.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), RestoreError> {
+        let refuse = |reason| RestoreError { reason };
+        self.check(snapshot).map_err(refuse)?;
+        self.system.workspace =
+            LinearWorkspace::with_history(&snapshot.solver, &self.system.layout).map_err(refuse)?;
+        self.state = snapshot.state.clone();
+        self.momentum_rates = snapshot.momentum_rates.clone();
+        self.apply_schedules(self.state.time);
+        if let (Some(contact), Some(kappa)) = (&mut self.system.contact, snapshot.kappa) {
+            contact.set_kappa(kappa);
+            contact.prepare(&self.state.q);
+            contact.refresh(&self.state.q);
+        }
+        Ok(())
+    }
+
+    fn check(&self, snapshot: &Snapshot) -> Result<(), String> {
+        let state = &snapshot.state;
+        for (what, values, expected) in [
+            ("positions", &state.q, self.state.q.len()),
+            ("velocities", &state.velocities, self.state.velocities.len()),
+            (
+                "forces",
+                &snapshot.momentum_rates,
+                self.momentum_rates.len(),
+            ),
+        ] {
+            if values.len() != expected {
+                return Err(format!("it has {} {what} for {expected}", values.len()));
+            }
+            if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+                return Err(format!("one of its {what} is {value}"));
+            }
+        }
+        if !(state.time.is_finite() && state.time >= 0.0) {
+            return Err(format!("its time is {} s", state.time));
+        }
+        match (&self.system.contact, snapshot.kappa) {
+            (None, None) => Ok(()),
+            (Some(_), Some(kappa)) if kappa.is_finite() && kappa > 0.0 => Ok(()),
+            (_, kappa) => Err(format!("its barrier stiffness is {kappa:?}")),
+        }
+    }
+}
