@@ -38,7 +38,7 @@ pub(crate) enum Verb {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 SCENE is a scene.toml, a folder that holds one, or a scene that ships with Koiter:
-  sphere-drape, drape-n, cantilever, your-own-mesh
+  sphere-drape, drape-n, cantilever, hanging-sheet, v-beam, your-own-mesh
 
 Examples:
   koiter run sphere-drape

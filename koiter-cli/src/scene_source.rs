@@ -37,6 +37,16 @@ const SHIPPED: &[Shipped] = &[
         meshes: &[],
     },
     Shipped {
+        name: "hanging-sheet",
+        text: include_str!("../../scenes/hanging-sheet/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "v-beam",
+        text: include_str!("../../scenes/v-beam/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
         name: "your-own-mesh",
         text: include_str!("../../scenes/your-own-mesh/scene.toml"),
         meshes: &[(
@@ -234,7 +244,9 @@ mod tests {
             let found = find(shipped.name).unwrap();
             for variant in ["default", "tiny"] {
                 let overrides: Vec<String> = match (variant, shipped.name) {
-                    ("tiny", "sphere-drape") => vec!["resolution=tiny".into()],
+                    ("tiny", "sphere-drape" | "hanging-sheet" | "v-beam" | "cantilever") => {
+                        vec!["resolution=tiny".into()]
+                    }
                     ("tiny", "drape-n") => vec!["n=35".into()],
                     _ => vec![],
                 };

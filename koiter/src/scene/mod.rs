@@ -28,6 +28,8 @@ mod placement;
 #[cfg(feature = "serde")]
 mod probe;
 #[cfg(feature = "serde")]
+mod schema;
+#[cfg(feature = "serde")]
 mod selection;
 #[cfg(feature = "serde")]
 pub mod spec;
@@ -48,6 +50,7 @@ pub use self::{
     nearest::nearest,
     placement::{MeshSource, NoFiles, UnreadableMesh},
     probe::{Observable, Probe, ProbeTarget},
+    schema::json_schema,
     selection::{SelectionError, select},
     spec::{SceneFile, SceneSpec},
 };

@@ -9,7 +9,7 @@ pub use crate::mesh::Surface;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
-    derive(serde::Deserialize),
+    derive(serde::Deserialize, serde::Serialize, schemars::JsonSchema),
     serde(rename_all = "kebab-case")
 )]
 #[non_exhaustive]
@@ -194,7 +194,7 @@ impl Default for SolverOptions {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
-    derive(serde::Deserialize),
+    derive(serde::Deserialize, serde::Serialize, schemars::JsonSchema),
     serde(rename_all = "kebab-case")
 )]
 #[non_exhaustive]

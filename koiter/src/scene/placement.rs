@@ -143,6 +143,9 @@ fn generate(spec: &MeshSpec) -> Result<Surface, GeneratorError> {
         let hole = g.hole_degrees.map(f64::to_radians);
         return generate::spherical_cap(g.radius, g.degrees.to_radians(), hole, g.rings);
     }
+    if let Some(g) = &spec.vee {
+        return generate::vee(g.length, g.width, g.degrees.to_radians(), g.along, g.across);
+    }
     // The scene's checks let exactly one shape through.
     Err(GeneratorError::Mesh(MeshError::Empty))
 }

@@ -65,6 +65,9 @@ impl Motion {
 
 #[cfg(feature = "serde")]
 mod typed {
+    use std::borrow::Cow;
+
+    use schemars::{JsonSchema, Schema, SchemaGenerator};
     use serde::{Deserialize, Deserializer};
 
     use super::{Motion, Rotation, Schedule, Vec3};
@@ -78,8 +81,22 @@ mod typed {
         }
     }
 
+    impl<T: JsonSchema> JsonSchema for Schedule<T> {
+        fn inline_schema() -> bool {
+            true
+        }
+
+        fn schema_name() -> Cow<'static, str> {
+            format!("Schedule_of_{}", T::schema_name()).into()
+        }
+
+        fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+            Vec::<(f64, T)>::json_schema(generator)
+        }
+    }
+
     /// `motion` in a scene file.
-    #[derive(Clone, Debug, Default, Deserialize)]
+    #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
     pub struct MotionSpec {
         /// Translation [m] over time.
@@ -91,7 +108,7 @@ mod typed {
     }
 
     /// `motion.rotate` in a scene file.
-    #[derive(Clone, Debug, Deserialize)]
+    #[derive(Clone, Debug, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
     pub struct TurnSpec {
         /// Direction of the axis, of any length but 0.

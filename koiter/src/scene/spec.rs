@@ -28,10 +28,11 @@ pub use shape::{
 };
 pub use shape::{
     CapSpec, ConeSpec, CylinderSpec, Diagonals, DiscSpec, GridSpec, IcosphereSpec, IrregularSpec,
-    TorusSpec,
+    TorusSpec, VeeSpec,
 };
 
-use serde::Deserialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::decode::decode;
 use super::document::Document;
@@ -40,7 +41,7 @@ use super::model::{BendingModel, IntegratorKind};
 use super::schedule::{MotionSpec, Schedule};
 
 /// A scene as it was typed.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {
     /// One line.
@@ -88,7 +89,7 @@ fn standard_gravity() -> [f64; 3] {
 }
 
 /// `[time]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeSpec {
     /// End of the simulation [s].
@@ -98,7 +99,7 @@ pub struct TimeSpec {
 }
 
 /// `[[shell]]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShellSpec {
     /// Name, unique in the scene.
@@ -107,6 +108,7 @@ pub struct ShellSpec {
     pub mesh: MeshSpec,
     /// Material: a preset, numbers, or a preset with some numbers replaced.
     #[serde(default)]
+    #[schemars(schema_with = "super::schema::material")]
     pub material: MaterialSpec,
     /// Thickness [m]; default: the preset's.
     #[serde(default)]
@@ -137,7 +139,7 @@ fn default_friction() -> f64 {
 }
 
 /// Rest curvature of a shell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RestSpec {
@@ -149,11 +151,12 @@ pub enum RestSpec {
 }
 
 /// `material`: `"cotton"` is short for `{ preset = "cotton" }`.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
     /// Name of a preset.
     #[serde(default)]
+    #[schemars(schema_with = "super::schema::preset_name")]
     pub preset: Option<String>,
     /// Young's modulus [Pa].
     #[serde(default)]
@@ -167,7 +170,7 @@ pub struct MaterialSpec {
 }
 
 /// `[[obstacle]]`: exactly one shape.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleSpec {
     /// Name, unique in the scene.
@@ -205,7 +208,7 @@ pub struct ObstacleSpec {
 }
 
 /// `[[constraint]]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConstraintSpec {
     /// Name, to be addressed by; default: its number.
@@ -217,6 +220,7 @@ pub struct ConstraintSpec {
     pub select: SelectSpec,
     /// Which of x, y, z are prescribed.
     #[serde(default = "all_axes")]
+    #[schemars(regex(pattern = "^[xyz]{1,3}$"))]
     pub axes: String,
     /// Motion over time; default: none, the vertices are pinned.
     #[serde(default)]
@@ -234,7 +238,7 @@ fn all_axes() -> String {
 }
 
 /// `select`: vertices that meet all the conditions given, in the start shape.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SelectSpec {
     /// All vertices.
@@ -255,7 +259,7 @@ pub struct SelectSpec {
 }
 
 /// A box by its corners [m].
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoundsSpec {
     /// Smallest coordinates; default: no limit.
@@ -275,7 +279,7 @@ fn no_maximum() -> [f64; 3] {
 }
 
 /// `[contact]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSpec {
     /// Whether contact is on.
@@ -312,7 +316,7 @@ fn friction_speed() -> f64 {
 }
 
 /// `[solver]`; defaults are those of [`super::model::SolverOptions`].
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolverSpec {
     /// Newton stops when nothing moved faster than this [m/s].
@@ -327,7 +331,7 @@ pub struct SolverSpec {
 }
 
 /// `[[probe]]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProbeSpec {
     /// Name, the heading of its column.
@@ -352,7 +356,7 @@ pub struct ProbeSpec {
 }
 
 /// What a probe measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ProbeQuantity {
@@ -373,7 +377,7 @@ pub enum ProbeQuantity {
 }
 
 /// A coordinate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Axis {
     /// First.
@@ -385,7 +389,7 @@ pub enum Axis {
 }
 
 /// `[output]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputSpec {
     /// A frame every so many steps.
@@ -396,12 +400,14 @@ pub struct OutputSpec {
     pub every_seconds: Option<f64>,
     /// Face fields written with each frame.
     #[serde(default = "all_fields")]
+    #[schemars(schema_with = "super::schema::field_names")]
     pub fields: Vec<String>,
     /// View of the pictures: `front`, `side`, `top`, `iso`, or `azimuth=30,elevation=20,zoom=1.2`.
     #[serde(default)]
     pub camera: Option<String>,
     /// Field that colours the pictures.
     #[serde(default)]
+    #[schemars(schema_with = "super::schema::field_name")]
     pub color: Option<String>,
 }
 

@@ -7,11 +7,13 @@ mod rectangle;
 mod revolution;
 mod rings;
 mod solids;
+mod vee;
 
 pub use irregular::{IRREGULAR_MIN_ANGLE_DEGREES, irregular};
 pub use rectangle::{GridDiagonals, grid};
 pub use revolution::{cone, cylinder, disc, solid_cylinder, spherical_cap, torus};
 pub use solids::{box_mesh, icosphere};
+pub use vee::vee;
 
 use super::{MeshError, Surface, SurfaceOptions};
 use crate::Vec3;

@@ -1,11 +1,12 @@
 //! Shapes in a scene file: meshes from files and generators, solids, and where they are put.
 
-use serde::Deserialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A mesh: exactly one of `file` and the generators, then placed.
 ///
 /// Placed in this order: units and scale, up axis, centring, rotation, translation.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshSpec {
     /// OBJ, PLY, STL or OFF file, relative to the scene's folder.
@@ -35,6 +36,9 @@ pub struct MeshSpec {
     /// Part of a sphere about the +z pole.
     #[serde(default)]
     pub cap: Option<CapSpec>,
+    /// Sheet folded along its middle line.
+    #[serde(default)]
+    pub vee: Option<VeeSpec>,
     /// Unit of the file's numbers.
     #[serde(default)]
     pub units: Units,
@@ -75,6 +79,7 @@ impl MeshSpec {
             ("icosphere", self.icosphere.is_some()),
             ("torus", self.torus.is_some()),
             ("cap", self.cap.is_some()),
+            ("vee", self.vee.is_some()),
         ]
         .into_iter()
         .filter_map(|(name, given)| given.then_some(name))
@@ -83,7 +88,7 @@ impl MeshSpec {
 }
 
 /// Unit of lengths in a mesh file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[non_exhaustive]
 pub enum Units {
     /// Metre.
@@ -118,7 +123,7 @@ impl Units {
 }
 
 /// Which axis of a mesh file points up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum UpAxis {
     /// As many games and modellers have it.
@@ -129,7 +134,7 @@ pub enum UpAxis {
 }
 
 /// A rotation about a line.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RotationSpec {
     /// Direction of the axis, of any length but 0.
@@ -142,7 +147,7 @@ pub struct RotationSpec {
 }
 
 /// Direction of the diagonals of a grid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Diagonals {
@@ -156,7 +161,7 @@ pub enum Diagonals {
 }
 
 /// Rectangle of regular triangles in the plane z = 0, centred.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GridSpec {
     /// Size along x and y [m].
@@ -169,7 +174,7 @@ pub struct GridSpec {
 }
 
 /// Rectangle of irregular triangles in the plane z = 0, centred.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct IrregularSpec {
     /// Size along x and y [m].
@@ -182,7 +187,7 @@ pub struct IrregularSpec {
 }
 
 /// Flat disc in the plane z = 0.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiscSpec {
     /// Radius [m].
@@ -192,7 +197,7 @@ pub struct DiscSpec {
 }
 
 /// Open tube along z, centred.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderSpec {
     /// Radius [m].
@@ -206,7 +211,7 @@ pub struct CylinderSpec {
 }
 
 /// Cone or frustum along z, its base at z = 0.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConeSpec {
     /// Radius at the base [m].
@@ -223,7 +228,7 @@ pub struct ConeSpec {
 }
 
 /// Ball of nearly equal triangles about the origin.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct IcosphereSpec {
     /// Radius [m].
@@ -233,7 +238,7 @@ pub struct IcosphereSpec {
 }
 
 /// Torus about z.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TorusSpec {
     /// Radius of the circle in the tube's middle [m].
@@ -247,7 +252,7 @@ pub struct TorusSpec {
 }
 
 /// Part of a sphere about the +z pole, centred at the sphere's centre.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CapSpec {
     /// Radius of the sphere [m].
@@ -261,8 +266,24 @@ pub struct CapSpec {
     pub rings: usize,
 }
 
+/// Two rectangles that meet in a crease on the x axis; it opens upwards.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VeeSpec {
+    /// Length of the crease [m].
+    pub length: f64,
+    /// Width of each side [m].
+    pub width: f64,
+    /// Angle between the sides [°]; 180 would be flat.
+    pub degrees: f64,
+    /// Cells along the crease.
+    pub along: usize,
+    /// Cells across each side.
+    pub across: usize,
+}
+
 /// Half-space.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneSpec {
     /// A point of the plane [m].
@@ -278,7 +299,7 @@ fn up() -> [f64; 3] {
 }
 
 /// Ball.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SphereSpec {
     /// Centre [m].
@@ -289,7 +310,7 @@ pub struct SphereSpec {
 }
 
 /// Cylinder with round ends.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CapsuleSpec {
     /// Ends of the axis [m].
@@ -299,7 +320,7 @@ pub struct CapsuleSpec {
 }
 
 /// Box about the origin.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxSpec {
     /// Size along x, y and z [m].
@@ -307,7 +328,7 @@ pub struct BoxSpec {
 }
 
 /// Cylinder with flat ends along z, about the origin.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderBodySpec {
     /// Radius [m].
