@@ -11,5 +11,6 @@ pub mod result;
 pub mod write;
 
 pub use atomic_file::write_atomically;
+pub use checksum::crc32;
 pub use read::{RawMesh, ReadError, read_mesh};
 pub use result::Checkpoint;

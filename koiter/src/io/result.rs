@@ -25,7 +25,8 @@ pub use checkpoint::{Checkpoint, CheckpointError, Totals};
 pub use error::ResultError;
 pub use frame::{Field, Frame, FrameInfo};
 pub use manifest::{Manifest, Part, PartKind, UpAxis};
-pub use reader::ResultReader;
+pub use reader::{ResultReader, decode_stats};
+pub use topology_file::decode_topology;
 pub use writer::ResultWriter;
 
 use std::path::{Path, PathBuf};

@@ -2,6 +2,7 @@
 
 use super::document::Document;
 use super::error::{SceneError, SceneErrorKind as Kind, Warning};
+use super::memory;
 use super::model::{
     Constraint, ContactOptions, Model, Obstacle, ObstacleShape, Shell, SolverOptions,
 };
@@ -45,16 +46,28 @@ impl Scene {
     /// # Errors
     /// A mesh that cannot be read, made or used; a rest mesh of other triangles; a selection without vertices.
     pub fn build(file: &SceneFile, source: &dyn MeshSource) -> Result<Self, SceneError> {
+        Self::build_within(file, source, u64::MAX)
+    }
+
+    /// [`Self::build`] where no more than `memory` [bytes] can be had: generated meshes are counted before they are
+    /// made, meshes from files before they are assembled.
+    ///
+    /// # Errors
+    /// As of [`Self::build`], and a scene that is estimated to need more.
+    pub fn build_within(
+        file: &SceneFile,
+        source: &dyn MeshSource,
+        memory: u64,
+    ) -> Result<Self, SceneError> {
+        let place = |error| file.document.place(error);
+        memory::check_spec(&file.spec, memory).map_err(place)?;
         let builder = Builder {
             spec: &file.spec,
             source,
         };
-        let model = builder
-            .model()
-            .map_err(|error| file.document.place(error))?;
-        let probes = builder
-            .probes(&model)
-            .map_err(|error| file.document.place(error))?;
+        let model = builder.model().map_err(place)?;
+        memory::check_model(&model, memory).map_err(place)?;
+        let probes = builder.probes(&model).map_err(place)?;
         let spec = &file.spec;
         let frame_steps = match (spec.output.every_steps, spec.output.every_seconds) {
             (Some(steps), _) => steps,

@@ -66,6 +66,8 @@ pub enum SceneErrorKind {
     EmptySelection,
     /// A mesh that cannot be read, made or used.
     Mesh,
+    /// More than fits into memory.
+    TooLarge,
 }
 
 /// A mistake in a scene: one sentence, its place, and what to do.

@@ -22,6 +22,8 @@ mod document;
 #[cfg(feature = "serde")]
 mod error;
 #[cfg(feature = "serde")]
+mod memory;
+#[cfg(feature = "serde")]
 mod nearest;
 #[cfg(feature = "serde")]
 mod placement;

@@ -41,9 +41,9 @@ pub struct SystemStats {
 }
 
 /// Peaks of runs with BAC: 38 MB at 2.6k unknowns, 187 MB at 14k, 234 MB at 30k, 2.9 GB at 483k. Most is the factor.
-const BYTES_A_DOF: usize = 6_000;
+pub(super) const BYTES_A_DOF: usize = 6_000;
 /// The program itself, with its scene and pictures.
-const PROGRAM_BYTES: usize = 40_000_000;
+pub(super) const PROGRAM_BYTES: usize = 40_000_000;
 
 impl Simulation {
     /// Builds energies and masses, solves for rest and start directors, and checks the start.

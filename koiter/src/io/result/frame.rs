@@ -71,7 +71,10 @@ impl Frame {
     }
 
     /// Checks the lengths, and that times and positions are finite.
-    pub(super) fn check(&self, num_vertices: usize, num_faces: usize) -> Result<(), String> {
+    ///
+    /// # Errors
+    /// What is wrong, as the end of a sentence that begins with the file's name.
+    pub fn check(&self, num_vertices: usize, num_faces: usize) -> Result<(), String> {
         if !self.time.is_finite() {
             return Err(format!("its time is {}", self.time));
         }
@@ -132,8 +135,11 @@ impl Frame {
         bytes
     }
 
-    /// The frame, or what is wrong with the file.
-    pub(super) fn decode(bytes: &[u8]) -> Result<Self, String> {
+    /// The frame in the bytes of a frame file; its lengths and numbers are not yet checked.
+    ///
+    /// # Errors
+    /// What is wrong, as the end of a sentence that begins with the file's name.
+    pub fn decode(bytes: &[u8]) -> Result<Self, String> {
         let body = checked_body(bytes, MAGIC, VERSION)?;
         let mut reader = ByteReader::new(body, Endian::Little);
         let header = read_header(&mut reader)?;

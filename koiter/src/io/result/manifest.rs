@@ -107,7 +107,10 @@ impl Manifest {
     }
 
     /// Checks that the parts follow each other without gap and that faces stay in their part.
-    pub(super) fn check(&self, faces: &[[u32; 3]]) -> Result<(), String> {
+    ///
+    /// # Errors
+    /// What is wrong, as the end of a sentence that begins with the file's name.
+    pub fn check(&self, faces: &[[u32; 3]]) -> Result<(), String> {
         let (mut next_vertex, mut next_face) = (0, 0);
         for part in &self.parts {
             let Part {
@@ -161,12 +164,8 @@ impl Manifest {
 
     pub(super) fn read(folder: &Path) -> Result<Self, ResultError> {
         let path = folder.join(MANIFEST);
-        let not_a_result = |reason: String| ResultError::NotAResult {
-            path: folder.to_path_buf(),
-            reason,
-        };
-        let bytes = match fs::read(&path) {
-            Ok(bytes) => bytes,
+        match fs::read(&path) {
+            Ok(bytes) => Self::decode(folder, &bytes),
             Err(error)
                 if matches!(
                     error.kind(),
@@ -179,17 +178,24 @@ impl Manifest {
                 } else {
                     "there is no such folder"
                 };
-                return Err(not_a_result(reason.to_string()));
+                Err(not_a_result(folder, reason.to_string()))
             }
-            Err(error) => return Err(while_trying("read", &path)(error)),
-        };
-        let head: ManifestFile<AnyVersion> = serde_json::from_slice(&bytes)
-            .map_err(|error| not_a_result(format!("its manifest.json is not ours ({error})")))?;
+            Err(error) => Err(while_trying("read", &path)(error)),
+        }
+    }
+
+    /// The manifest in the bytes of `manifest.json`; `folder` is named in errors.
+    ///
+    /// # Errors
+    /// Not a manifest of ours, a newer format, a broken file.
+    pub fn decode(folder: &Path, bytes: &[u8]) -> Result<Self, ResultError> {
+        let path = folder.join(MANIFEST);
+        let head: ManifestFile<AnyVersion> = serde_json::from_slice(bytes).map_err(|error| {
+            not_a_result(folder, format!("its manifest.json is not ours ({error})"))
+        })?;
         if head.format != FORMAT {
-            return Err(not_a_result(format!(
-                "its manifest.json is of format '{}'",
-                head.format
-            )));
+            let reason = format!("its manifest.json is of format '{}'", head.format);
+            return Err(not_a_result(folder, reason));
         }
         if head.format_version != FORMAT_VERSION {
             let (found, supported) = (head.format_version, FORMAT_VERSION);
@@ -199,12 +205,19 @@ impl Manifest {
                 supported,
             });
         }
-        match serde_json::from_slice::<ManifestFile<Self>>(&bytes) {
+        match serde_json::from_slice::<ManifestFile<Self>>(bytes) {
             Ok(file) => Ok(file.manifest),
             Err(error) => Err(ResultError::Broken {
                 path,
                 reason: error.to_string(),
             }),
         }
+    }
+}
+
+fn not_a_result(folder: &Path, reason: String) -> ResultError {
+    ResultError::NotAResult {
+        path: folder.to_path_buf(),
+        reason,
     }
 }

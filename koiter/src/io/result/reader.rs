@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use super::error::while_trying;
 use super::frame::HEADER_LENGTH;
 use super::{
-    FRAMES, Frame, FrameInfo, Manifest, ResultError, STATS, SUMMARY, TOPOLOGY, frame_path,
-    topology_file,
+    FRAMES, Frame, FrameInfo, Manifest, ResultError, STATS, SUMMARY, TOPOLOGY, decode_topology,
+    frame_path,
 };
 
 /// A result folder opened for reading; frames are read when asked for.
@@ -33,7 +33,7 @@ impl ResultReader {
             path: path.clone(),
             reason,
         };
-        let (num_vertices, faces) = topology_file::decode(&bytes).map_err(broken)?;
+        let (num_vertices, faces) = decode_topology(&bytes).map_err(broken)?;
         if num_vertices != manifest.num_vertices() {
             let expected = manifest.num_vertices();
             return Err(broken(format!(
@@ -110,7 +110,7 @@ impl ResultReader {
         Frame::decode_info(&bytes).map_err(|reason| ResultError::Broken { path, reason })
     }
 
-    /// The lines of `stats.jsonl`; a last line that is not complete (the run goes on, or was killed) is left out.
+    /// The lines of `stats.jsonl`; see [`decode_stats`].
     ///
     /// # Errors
     /// A complete line that is not JSON, a refusal of the system.
@@ -119,21 +119,7 @@ impl ResultReader {
         let Some(bytes) = read_if_there(&path)? else {
             return Ok(Vec::new());
         };
-        let lines = bytes
-            .split_inclusive(|&byte| byte == b'\n')
-            .filter(|line| line.ends_with(b"\n"));
-        let mut records = Vec::new();
-        for (number, line) in lines.enumerate() {
-            let record = serde_json::from_slice(line).map_err(|error| {
-                let reason = format!("line {} is not JSON ({error})", number + 1);
-                ResultError::Broken {
-                    path: path.clone(),
-                    reason,
-                }
-            })?;
-            records.push(record);
-        }
-        Ok(records)
+        decode_stats(&bytes).map_err(|reason| ResultError::Broken { path, reason })
     }
 
     /// `summary.json`, if the run has ended.
@@ -161,6 +147,22 @@ impl ResultReader {
             Err(ResultError::NoFrame { index, len, path })
         }
     }
+}
+
+/// The lines of `stats.jsonl`; a last line that is not complete (the run goes on, or was killed) is left out.
+///
+/// # Errors
+/// What is wrong, as the end of a sentence that begins with the file's name.
+pub fn decode_stats(bytes: &[u8]) -> Result<Vec<serde_json::Value>, String> {
+    bytes
+        .split_inclusive(|&byte| byte == b'\n')
+        .filter(|line| line.ends_with(b"\n"))
+        .enumerate()
+        .map(|(index, line)| {
+            serde_json::from_slice(line)
+                .map_err(|error| format!("line {} is not JSON ({error})", index + 1))
+        })
+        .collect()
 }
 
 fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, ResultError> {

@@ -24,8 +24,12 @@ pub(super) fn encode(num_vertices: usize, faces: &[[u32; 3]]) -> Vec<u8> {
     bytes
 }
 
-/// Number of vertices and faces, or what is wrong.
-pub(super) fn decode(bytes: &[u8]) -> Result<(usize, Vec<[u32; 3]>), String> {
+/// Number of vertices and faces from the bytes of `topology.bin`; whether they fit each other is for
+/// [`Manifest::check`](super::Manifest::check).
+///
+/// # Errors
+/// What is wrong, as the end of a sentence that begins with the file's name.
+pub fn decode_topology(bytes: &[u8]) -> Result<(usize, Vec<[u32; 3]>), String> {
     let body = checked_body(bytes, MAGIC, VERSION)?;
     let mut reader = ByteReader::new(body, Endian::Little);
     let short = || "it ends within the header".to_string();

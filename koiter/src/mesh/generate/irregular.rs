@@ -4,7 +4,7 @@ use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation,
 };
 
-use super::{GeneratorError, build, check_face_count, check_positive};
+use super::{GeneratorError, build, check_face_count, check_positive, face_count};
 use crate::Vec3;
 use crate::mesh::Surface;
 
@@ -34,7 +34,7 @@ pub fn irregular(
     check_positive("depth of the rectangle", depth)?;
     check_positive("largest triangle area", max_area)?;
     let spacing = (2.0 * max_area).sqrt();
-    let expected_faces = 2.0 * width * depth / max_area + 16.0 * (width + depth) / spacing;
+    let expected_faces = face_count::irregular(width, depth, max_area);
     check_face_count(expected_faces)?;
 
     let (mut points, segments) = boundary_points(width, depth, spacing);

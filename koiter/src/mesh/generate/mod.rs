@@ -2,6 +2,7 @@
 //!
 //! Everything is centred at the origin with z as its axis; the one exception is the cone, whose base lies at z = 0.
 
+pub mod face_count;
 mod irregular;
 mod rectangle;
 mod revolution;

@@ -1,6 +1,6 @@
 //! A rectangle of right triangles.
 
-use super::{GeneratorError, build, check_at_least, check_face_count, check_positive};
+use super::{GeneratorError, build, check_at_least, check_face_count, check_positive, face_count};
 use crate::Vec3;
 use crate::mesh::Surface;
 
@@ -47,7 +47,7 @@ pub fn grid(
     check_positive("depth of the grid", depth)?;
     check_at_least("number of cells along x", nx, 1)?;
     check_at_least("number of cells along y", ny, 1)?;
-    check_face_count(2.0 * nx as f64 * ny as f64)?;
+    check_face_count(face_count::cells(nx, ny))?;
 
     let mut positions = Vec::with_capacity((nx + 1) * (ny + 1));
     for j in 0..=ny {

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use super::rings::{Ring, join_rings};
 use super::{
     GeneratorError, build, check_at_least, check_between, check_face_count, check_positive,
+    face_count,
 };
 use crate::Vec3;
 use crate::mesh::Surface;
@@ -19,7 +20,7 @@ use crate::mesh::Surface;
 pub fn disc(radius: f64, rings: usize) -> Result<Surface, GeneratorError> {
     check_positive("radius of the disc", radius)?;
     check_at_least("number of rings", rings, 1)?;
-    check_face_count(6.0 * (rings as f64).powi(2))?;
+    check_face_count(face_count::disc(rings))?;
     // From the rim inwards, for normals along +z.
     let ring = |k: usize| Ring {
         radius: radius * k as f64 / rings as f64,
@@ -46,7 +47,7 @@ pub fn cylinder(
     check_positive("height of the cylinder", height)?;
     check_at_least("number of cells around", around, 3)?;
     check_at_least("number of cells along the axis", along, 1)?;
-    check_face_count(2.0 * around as f64 * along as f64)?;
+    check_face_count(face_count::cells(around, along))?;
     let ring = |k: usize| Ring {
         radius,
         z: height * (2.0 * k as f64 - along as f64) / (2.0 * along as f64),
@@ -112,7 +113,7 @@ pub fn cone(
     }
     check_at_least("number of cells around", around, 6)?;
     check_at_least("number of cells along the axis", along, 1)?;
-    check_face_count(2.0 * around as f64 * along as f64)?;
+    check_face_count(face_count::cells(around, along))?;
     let top = top_radius.unwrap_or(0.0);
     let ring = |k: usize| {
         let t = k as f64 / along as f64;
@@ -152,8 +153,7 @@ pub fn spherical_cap(
     check_at_least("number of rings", rings, 1)?;
     let hole = hole_angle.unwrap_or(0.0);
     let step = (angle - hole) / rings as f64;
-    // Area of the cap over the area of two triangles between rings.
-    check_face_count(2.0 * TAU * (hole.cos() - angle.cos()) / (step * step) + 12.0 * rings as f64)?;
+    check_face_count(face_count::spherical_cap(angle, hole, rings))?;
     let ring = |k: usize| {
         let polar = hole + step * k as f64;
         let is_pole = hole_angle.is_none() && k == 0;
@@ -186,7 +186,7 @@ pub fn torus(
     check_between("minor radius of the torus", minor_radius, 0.0, major_radius)?;
     check_at_least("number of cells around", around, 3)?;
     check_at_least("number of cells around the tube", tube, 3)?;
-    check_face_count(2.0 * around as f64 * tube as f64)?;
+    check_face_count(face_count::cells(around, tube))?;
     let mut positions = Vec::with_capacity(around * tube);
     let mut faces = Vec::with_capacity(2 * around * tube);
     for i in 0..around {

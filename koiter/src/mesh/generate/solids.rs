@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{GeneratorError, build, check_face_count, check_positive};
+use super::{GeneratorError, build, check_face_count, check_positive, face_count};
 use crate::Vec3;
 use crate::mesh::Surface;
 
@@ -14,7 +14,7 @@ use crate::mesh::Surface;
 /// A radius that is not positive, too many faces.
 pub fn icosphere(radius: f64, subdivisions: usize) -> Result<Surface, GeneratorError> {
     check_positive("radius of the sphere", radius)?;
-    check_face_count(20.0 * 4f64.powf(subdivisions as f64))?;
+    check_face_count(face_count::icosphere(subdivisions))?;
     let g = f64::midpoint(1.0, 5f64.sqrt());
     let mut directions: Vec<Vec3> = Vec::new();
     for (a, b) in [(-1.0, g), (1.0, g), (-1.0, -g), (1.0, -g)] {

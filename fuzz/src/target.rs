@@ -1,0 +1,305 @@
+//! The readers, each as a function from bytes to whether they were taken as good.
+
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+use koiter::Vec3;
+use koiter::io::crc32;
+use koiter::io::read::MeshFormat;
+use koiter::io::result::{Frame, Manifest, decode_stats, decode_topology};
+use koiter::mesh::{OrientationPolicy, Surface, SurfaceOptions, UnreferencedPolicy};
+use koiter::scene::{MeshSource, Scene, SceneFile, UnreadableMesh};
+
+/// A reader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// Wavefront OBJ, to a checked surface.
+    Obj,
+    /// Stanford PLY, to a checked surface.
+    Ply,
+    /// STL, to a checked surface.
+    Stl,
+    /// OFF, to a checked surface.
+    Off,
+    /// A scene, to a checked model. Lines that begin with `#set ` are overrides.
+    Scene,
+    /// `manifest.json` of a result.
+    Manifest,
+    /// `topology.bin` of a result.
+    Topology,
+    /// A frame of a result.
+    Frame,
+    /// `stats.jsonl` of a result.
+    Stats,
+}
+
+impl Target {
+    /// All readers.
+    pub const ALL: [Self; 9] = [
+        Self::Obj,
+        Self::Ply,
+        Self::Stl,
+        Self::Off,
+        Self::Scene,
+        Self::Manifest,
+        Self::Topology,
+        Self::Frame,
+        Self::Stats,
+    ];
+
+    /// What it is called on the command line; its corpus is in the folder of this name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Stl => "stl",
+            Self::Off => "off",
+            Self::Scene => "scene",
+            Self::Manifest => "manifest",
+            Self::Topology => "topology",
+            Self::Frame => "frame",
+            Self::Stats => "stats",
+        }
+    }
+
+    /// Hands bytes to the reader; whether it took them as good.
+    ///
+    /// # Panics
+    /// Never, if the reader is right.
+    pub fn read(self, bytes: &[u8]) -> bool {
+        match self {
+            Self::Obj => read_mesh(MeshFormat::Obj, bytes),
+            Self::Ply => read_mesh(MeshFormat::Ply, bytes),
+            Self::Stl => read_mesh(MeshFormat::Stl, bytes),
+            Self::Off => read_mesh(MeshFormat::Off, bytes),
+            Self::Scene => read_scene(bytes),
+            Self::Manifest => Manifest::decode(Path::new("result"), bytes)
+                .is_ok_and(|manifest| manifest.check(&[[0, 1, 2], [3, 4, 5]]).is_ok()),
+            Self::Topology => with_checksum(bytes, |bytes| decode_topology(bytes).is_ok()),
+            Self::Frame => with_checksum(bytes, |bytes| {
+                Frame::decode(bytes).is_ok_and(|frame| frame.check(4, 2).is_ok())
+            }),
+            Self::Stats => decode_stats(bytes).is_ok(),
+        }
+    }
+
+    /// Words of the format.
+    pub fn dictionary(self) -> &'static [&'static str] {
+        match self {
+            Self::Obj => &[
+                "v ", "f ", "\\\n", "#", "/", "//", "vn ", "-1", "\r\n", "\n",
+            ],
+            Self::Ply => PLY_WORDS,
+            Self::Stl => &[
+                "solid", "facet", "vertex ", "endfacet", "endloop", "endsolid", "\n",
+            ],
+            Self::Off => &["OFF", "COFF", "BINARY", "#", "\n"],
+            Self::Scene => SCENE_WORDS,
+            Self::Manifest | Self::Stats => &[
+                "{", "}", "[", "]", "\"", ":", ",", "null", "\\u0000", "1e999",
+            ],
+            Self::Topology | Self::Frame => &["KOITERTP", "KOITERFR"],
+        }
+    }
+}
+
+const PLY_WORDS: &[&str] = &[
+    "element vertex ",
+    "element face ",
+    "element edge ",
+    "property ",
+    "list ",
+    "uchar ",
+    "char ",
+    "int ",
+    "uint ",
+    "short ",
+    "float ",
+    "double ",
+    "x\n",
+    "y\n",
+    "z\n",
+    "vertex_indices\n",
+    "format ascii 1.0\n",
+    "format binary_little_endian 1.0\n",
+    "format binary_big_endian 1.0\n",
+    "comment ",
+    "end_header\n",
+    "\n",
+];
+
+const SCENE_WORDS: &[&str] = &[
+    "[[shell]]\n",
+    "[[obstacle]]\n",
+    "[[constraint]]\n",
+    "[[probe]]\n",
+    "[variants.a]\n",
+    "[variants.a.b]\n",
+    "#set ",
+    "name = ",
+    "mesh.grid",
+    "mesh.file",
+    "mesh.disc",
+    "mesh.cylinder",
+    "mesh.cone",
+    "mesh.icosphere",
+    "mesh.torus",
+    "mesh.cap",
+    "mesh.irregular",
+    "cells = [",
+    "rings = ",
+    "around = ",
+    "along = ",
+    "subdivisions = ",
+    "degrees = ",
+    "hole_degrees = ",
+    "max_area = ",
+    "scale = ",
+    "translate = [",
+    "rotate = {",
+    "units = \"mm\"",
+    "up = \"y\"",
+    "center = true",
+    "plane = {",
+    "sphere = {",
+    "capsule = {",
+    "box = {",
+    "cylinder = {",
+    "select.",
+    "all = true",
+    "boundary = ",
+    "nearest = ",
+    "vertices = [",
+    "motion.",
+    "until = ",
+    "axes = \"xyz\"",
+    "clamp = true",
+    "bending = ",
+    "rest = \"mesh\"",
+    "rest_mesh.",
+    "velocity = [",
+    "friction = ",
+    "contact_thickness = ",
+    "gravity_scale = [",
+    "time.",
+    "end = ",
+    "dt = ",
+    "output.",
+    "every_seconds = ",
+    "quantity = ",
+    "shell.",
+    "\"",
+    "'",
+    "\"\"\"",
+    "{",
+    "}",
+    "[",
+    "]",
+    "=",
+    ".",
+    ",",
+    "\n",
+    "1979-05-27",
+    "inf",
+    "nan",
+    "a.a.a.a.a.a.a.a.",
+];
+
+fn read_mesh(format: MeshFormat, bytes: &[u8]) -> bool {
+    let Ok(mesh) = format.parse(bytes) else {
+        return false;
+    };
+    let repair = SurfaceOptions {
+        orientation: OrientationPolicy::Repair,
+        unreferenced: UnreferencedPolicy::Drop,
+    };
+    let as_it_is = mesh.clone().into_surface(SurfaceOptions::default());
+    let repaired = mesh.into_surface(repair);
+    assert!(
+        as_it_is.is_err() || repaired.is_ok(),
+        "a sound mesh is spoilt by repairing it"
+    );
+    repaired.is_ok()
+}
+
+/// A file for whichever name a scene gives.
+struct Square;
+
+impl MeshSource for Square {
+    fn read(&self, _: &str, options: SurfaceOptions) -> Result<Surface, UnreadableMesh> {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let positions = corners.map(|[x, y]| Vec3::new(x, y, 0.0)).to_vec();
+        let faces = vec![[0, 1, 2], [0, 2, 3]];
+        Surface::new(positions, faces, options).map_err(|error| UnreadableMesh {
+            message: error.to_string(),
+            help: None,
+        })
+    }
+}
+
+/// Memory of the machine that scenes are built for [bytes]: some 3000 triangles, so that no input takes long.
+const SCENE_MEMORY: u64 = 100_000_000;
+
+fn read_scene(bytes: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(bytes);
+    let overrides: Vec<String> = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("#set "))
+        .map(ToOwned::to_owned)
+        .collect();
+    let built = SceneFile::parse("scene.toml", &text, &overrides).and_then(|file| {
+        let scene = Scene::build_within(&file, &Square, SCENE_MEMORY)?;
+        Ok((scene, file))
+    });
+    match built {
+        Ok((_, file)) => {
+            // What a result keeps of a scene must be the same scene.
+            let again = file.document.to_toml();
+            if let Err(error) = SceneFile::parse("again", &again, &[]) {
+                panic!("the scene as it was run cannot be read: {error}");
+            }
+            true
+        }
+        Err(error) => {
+            // Its place must be in the text.
+            if let Some(location) = &error.location {
+                let _ = (location.line(), location.column());
+                let text = &location.source.text;
+                assert!(
+                    text.get(location.span.clone()).is_some(),
+                    "{error}: its place is not in the text"
+                );
+            }
+            false
+        }
+    }
+}
+
+/// Reads bytes as they are, and with their last four bytes replaced by the right checksum: it must not be the only guard.
+fn with_checksum(bytes: &[u8], read: impl Fn(&[u8]) -> bool) -> bool {
+    let as_it_is = read(bytes);
+    let Some((content, _)) = bytes.split_last_chunk::<4>() else {
+        return as_it_is;
+    };
+    let sealed = [content, &crc32(content).to_le_bytes()].concat();
+    read(&sealed) || as_it_is
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Target {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let names = Self::ALL.map(Self::name).join(", ");
+        Self::ALL
+            .into_iter()
+            .find(|target| target.name() == name)
+            .ok_or_else(|| format!("there is no target '{name}'; there are {names}"))
+    }
+}

@@ -1,0 +1,31 @@
+//! How many faces a surface will have, before it is made. Floats, so that products of large resolutions do not overflow.
+
+use std::f64::consts::TAU;
+
+/// Of [`grid`](super::grid()), [`cylinder`](super::cylinder), [`cone`](super::cone) (at most) and
+/// [`torus`](super::torus): two a cell.
+pub fn cells(nx: usize, ny: usize) -> f64 {
+    2.0 * nx as f64 * ny as f64
+}
+
+/// Of [`irregular`](super::irregular()), at most.
+pub fn irregular(width: f64, depth: f64, max_area: f64) -> f64 {
+    let spacing = (2.0 * max_area).sqrt();
+    2.0 * width * depth / max_area + 16.0 * (width + depth) / spacing
+}
+
+/// Of [`disc`](super::disc).
+pub fn disc(rings: usize) -> f64 {
+    6.0 * (rings as f64).powi(2)
+}
+
+/// Of [`icosphere`](super::icosphere).
+pub fn icosphere(subdivisions: usize) -> f64 {
+    20.0 * 4f64.powi(subdivisions.try_into().unwrap_or(i32::MAX))
+}
+
+/// Of [`spherical_cap`](super::spherical_cap), about: its area over that of two triangles between rings.
+pub fn spherical_cap(angle: f64, hole_angle: f64, rings: usize) -> f64 {
+    let step = (angle - hole_angle) / rings as f64;
+    2.0 * TAU * (hole_angle.cos() - angle.cos()) / (step * step) + 12.0 * rings as f64
+}

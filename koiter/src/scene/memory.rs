@@ -1,0 +1,169 @@
+//! How much memory a scene takes, estimated before it is taken.
+
+use super::error::{SceneError, SceneErrorKind};
+use super::model::{BendingModel, Model, ObstacleShape};
+use super::simulation::{BYTES_A_DOF, PROGRAM_BYTES};
+use super::spec::{MeshSpec, ObstacleSpec, SceneSpec, ShellSpec};
+use crate::mesh::generate::face_count;
+
+/// Unknowns a face: half a vertex with three, and one and a half edges with one each where the model has directors.
+const DOFS_A_FACE: [f64; 2] = [1.5, 3.0];
+/// Topology, collision mesh and trees of a face that is not solved for.
+const BYTES_AN_OBSTACLE_FACE: f64 = 1_000.0;
+
+/// What one shell or obstacle takes.
+struct Share {
+    path: String,
+    faces: f64,
+    bytes: f64,
+}
+
+/// Refuses generated meshes that will not fit, before they are made. Files count nothing yet.
+pub(super) fn check_spec(spec: &SceneSpec, available: u64) -> Result<(), SceneError> {
+    let shells = spec.shell.iter().map(|shell| {
+        let ShellSpec { name, mesh, .. } = shell;
+        shell_share(name, shell.bending, generated_faces(mesh))
+    });
+    let obstacles = spec.obstacle.iter().map(|obstacle| {
+        let ObstacleSpec { name, mesh, .. } = obstacle;
+        let sides = obstacle.cylinder.as_ref().map_or(0, |body| body.sides);
+        let mesh = mesh.as_ref().map_or(0.0, generated_faces);
+        obstacle_share(name, mesh + 4.0 * sides as f64)
+    });
+    check(shells.chain(obstacles).collect(), available)
+}
+
+/// Refuses a model that will not fit, files included, before it is assembled.
+pub(super) fn check_model(model: &Model, available: u64) -> Result<(), SceneError> {
+    let shells = model.shells.iter().map(|shell| {
+        let faces = shell.surface.mesh.num_faces() as f64;
+        shell_share(&shell.name, shell.bending, faces)
+    });
+    let obstacles = model.obstacles.iter().map(|obstacle| {
+        let faces = match &obstacle.shape {
+            ObstacleShape::Mesh(surface) => surface.mesh.num_faces(),
+            _ => 0,
+        };
+        obstacle_share(&obstacle.name, faces as f64)
+    });
+    check(shells.chain(obstacles).collect(), available)
+}
+
+fn shell_share(name: &str, bending: BendingModel, faces: f64) -> Share {
+    let has_directors = !matches!(bending, BendingModel::DsTheta | BendingModel::None);
+    Share {
+        path: format!("shell.{name}.mesh"),
+        faces,
+        bytes: faces * DOFS_A_FACE[usize::from(has_directors)] * BYTES_A_DOF as f64,
+    }
+}
+
+fn obstacle_share(name: &str, faces: f64) -> Share {
+    Share {
+        path: format!("obstacle.{name}"),
+        faces,
+        bytes: faces * BYTES_AN_OBSTACLE_FACE,
+    }
+}
+
+fn check(shares: Vec<Share>, available: u64) -> Result<(), SceneError> {
+    let total = PROGRAM_BYTES as f64 + shares.iter().map(|share| share.bytes).sum::<f64>();
+    // A count that is not a number belongs to a mesh that its generator refuses.
+    if total.is_nan() || total <= available as f64 {
+        return Ok(());
+    }
+    let faces: f64 = shares.iter().map(|share| share.faces).sum();
+    let largest = shares
+        .into_iter()
+        .max_by(|a, b| a.bytes.total_cmp(&b.bytes));
+    let message = format!(
+        "the scene has about {faces:.1e} triangles and needs about {:.1} GB of memory; {:.1} GB are available",
+        total * 1e-9,
+        available as f64 * 1e-9
+    );
+    let path = largest.map_or(String::new(), |share| share.path);
+    Err(SceneError::new(SceneErrorKind::TooLarge, message)
+        .inside(&path)
+        .with_help("make the mesh coarser"))
+}
+
+/// Faces of a mesh that is generated; 0 for a file.
+fn generated_faces(spec: &MeshSpec) -> f64 {
+    let radians = |degrees: f64| degrees.to_radians();
+    let counts = [
+        spec.grid
+            .as_ref()
+            .map(|g| face_count::cells(g.cells[0], g.cells[1])),
+        spec.irregular
+            .as_ref()
+            .map(|g| face_count::irregular(g.size[0], g.size[1], g.max_area)),
+        spec.disc.as_ref().map(|g| face_count::disc(g.rings)),
+        spec.cylinder
+            .as_ref()
+            .map(|g| face_count::cells(g.around, g.along)),
+        spec.cone
+            .as_ref()
+            .map(|g| face_count::cells(g.around, g.along)),
+        spec.icosphere
+            .as_ref()
+            .map(|g| face_count::icosphere(g.subdivisions)),
+        spec.torus
+            .as_ref()
+            .map(|g| face_count::cells(g.around, g.tube)),
+        spec.cap.as_ref().map(|g| {
+            let hole = g.hole_degrees.map_or(0.0, radians);
+            face_count::spherical_cap(radians(g.degrees), hole, g.rings)
+        }),
+    ];
+    counts.into_iter().flatten().sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::placement::place;
+    use super::super::{NoFiles, Scene, SceneErrorKind, SceneFile};
+    use super::*;
+
+    fn scene(mesh: &str) -> SceneFile {
+        let text = format!(
+            "time = {{ end = 1.0, dt = 0.1 }}\n[[shell]]\nname = \"cloth\"\nmaterial = \"cotton\"\nmesh.{mesh}\n"
+        );
+        SceneFile::parse("scene.toml", &text, &[]).unwrap()
+    }
+
+    #[test]
+    fn ten_million_triangles_are_refused_before_they_are_made() {
+        let file = scene("grid = { size = [1.0, 1.0], cells = [2000, 2500] }");
+        let error = Scene::build_within(&file, &NoFiles, 8_000_000_000).unwrap_err();
+        assert_eq!(error.kind, SceneErrorKind::TooLarge);
+        assert_eq!(error.path, "shell.cloth.mesh");
+        assert_eq!(
+            error.message,
+            "the scene has about 1.0e7 triangles and needs about 180.0 GB of memory; 8.0 GB are available"
+        );
+        assert_eq!(error.location.unwrap().line(), 5);
+    }
+
+    #[test]
+    fn every_generator_is_counted_before_it_runs() {
+        for mesh in [
+            "grid = { size = [1.0, 1.0], cells = [20, 30] }",
+            "irregular = { size = [1.0, 1.0], max_area = 1e-3, seed = 1 }",
+            "disc = { radius = 1.0, rings = 12 }",
+            "cylinder = { radius = 1.0, height = 2.0, around = 40, along = 20 }",
+            "cone = { base_radius = 1.0, height = 2.0, around = 40, along = 20 }",
+            "icosphere = { radius = 1.0, subdivisions = 3 }",
+            "torus = { major_radius = 1.0, minor_radius = 0.3, around = 40, tube = 20 }",
+            "cap = { radius = 1.0, degrees = 80.0, hole_degrees = 10.0, rings = 15 }",
+        ] {
+            let spec = &scene(mesh).spec.shell[0].mesh;
+            let expected = generated_faces(spec);
+            let made = place(spec, &NoFiles).unwrap().mesh.num_faces() as f64;
+            // Upper bounds, not so far up that a scene that fits is refused.
+            assert!(
+                (made..=2.0 * made).contains(&expected),
+                "{mesh}: {made} of {expected}"
+            );
+        }
+    }
+}
