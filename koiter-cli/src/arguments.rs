@@ -140,7 +140,9 @@ pub(crate) struct RenderArguments {
 Examples:
   koiter export results/sphere-drape --to vtu -o drape.pvd      every frame, for ParaView
   koiter export results/sphere-drape --to obj -o end.obj        the last frame
-  koiter export results/sphere-drape --to ply -o k40.ply --frame 40")]
+  koiter export results/sphere-drape --to ply -o k40.ply --frame 40
+  koiter export results/sphere-drape --to glb -o drape.glb      a film, for browsers and Blender
+  koiter export results/sphere-drape --to glb -o strain.glb --frame 40 --color strain")]
 pub(crate) struct ExportArguments {
     /// Result folder
     pub(crate) result: PathBuf,
@@ -150,9 +152,12 @@ pub(crate) struct ExportArguments {
     /// File to write; for a vtu series, the .pvd that lists it
     #[arg(short, long, value_name = "PATH")]
     pub(crate) output: PathBuf,
-    /// Frame, from 0 [default: the last; vtu: all]
+    /// Frame, from 0 [default: the last; vtu and glb: all]
     #[arg(long, value_name = "K")]
     pub(crate) frame: Option<usize>,
+    /// Colour a frame of a glb by a field: strain, bending_energy_density or mean_curvature
+    #[arg(long, value_name = "FIELD")]
+    pub(crate) color: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -163,6 +168,8 @@ pub(crate) enum ExportFormat {
     Ply,
     /// VTK with fields; a series and its .pvd unless --frame is given
     Vtu,
+    /// glTF 2.0 in one file; a film unless --frame is given
+    Glb,
 }
 
 fn parse_threads(text: &str) -> Result<usize, String> {

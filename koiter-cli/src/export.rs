@@ -1,5 +1,7 @@
 //! `koiter export`: a result for other programs.
 
+mod glb;
+
 use crate::output::say;
 use koiter::io::result::ResultReader;
 use koiter::io::write::{MeshWithFields, write_obj, write_ply, write_vtu, write_vtu_series};
@@ -16,12 +18,20 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
             arguments.result.display()
         )));
     };
+    if arguments.color.is_some() && (arguments.to != ExportFormat::Glb || arguments.frame.is_none())
+    {
+        let message = "--color is for one frame as glb: colours do not move, and the other formats hold the fields";
+        return Err(
+            Failure::input(message).with_help("add --to glb --frame K, or leave --color out")
+        );
+    }
     let is_series = arguments.to == ExportFormat::Vtu && arguments.frame.is_none();
     let extension = match (arguments.to, is_series) {
         (ExportFormat::Obj, _) => "obj",
         (ExportFormat::Ply, _) => "ply",
         (ExportFormat::Vtu, true) => "pvd",
         (ExportFormat::Vtu, false) => "vtu",
+        (ExportFormat::Glb, _) => "glb",
     };
     let given = arguments
         .output
@@ -40,6 +50,8 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     };
     if is_series {
         write_vtu_series(&reader, &output, |_| {}).map_err(Failure::run)?;
+    } else if arguments.to == ExportFormat::Glb {
+        glb::export(&reader, arguments, &output)?;
     } else {
         let frame = reader
             .frame(arguments.frame.unwrap_or(last))
@@ -48,7 +60,7 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         match arguments.to {
             ExportFormat::Obj => write_obj(&output, &mesh),
             ExportFormat::Ply => write_ply(&output, &mesh),
-            ExportFormat::Vtu => write_vtu(&output, &mesh, Some(frame.time)),
+            _ => write_vtu(&output, &mesh, Some(frame.time)),
         }
         .map_err(Failure::run)?;
     }

@@ -5,7 +5,7 @@ mod frame_view;
 use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
-use koiter::io::result::ResultReader;
+use koiter::io::result::{Frame, ResultReader};
 use koiter::scene::spec::OutputSpec;
 use koiter_render::{
     Bounds, Camera, CameraView, ColorBy, ColorMap, Film, FilmError, Image, Quality, RenderOptions,
@@ -80,15 +80,7 @@ impl<'a> Album<'a> {
                 && let Some(name) = &look.color
                 && frame.field(name).is_none()
             {
-                let names: Vec<&str> = frame
-                    .face_fields
-                    .iter()
-                    .map(|field| field.name.as_str())
-                    .collect();
-                let message = format!("the result has no field '{name}'");
-                return Err(
-                    Failure::input(message).with_help(format!("it has: {}", names.join(", ")))
-                );
+                return Err(missing_field(&frame, name));
             }
             let view = FrameView::new(&topology, frame, look.color.as_deref());
             bounds = bounds.join(&view.bounds());
@@ -219,11 +211,7 @@ impl<'a> Album<'a> {
         let Some(name) = &self.look.color else {
             return ColorBy::Part;
         };
-        let (unit, map) = match name.as_str() {
-            "bending_energy_density" => ("J/m²", ColorMap::Viridis),
-            "mean_curvature" => ("1/m", ColorMap::CoolWarm),
-            _ => ("", ColorMap::Viridis),
-        };
+        let (unit, map) = color_map(name);
         ColorBy::Field {
             name: name.replace('_', " "),
             unit: unit.to_owned(),
@@ -233,8 +221,25 @@ impl<'a> Album<'a> {
     }
 }
 
+/// A field that was asked for and is not there.
+pub(crate) fn missing_field(frame: &Frame, name: &str) -> Failure {
+    let fields = frame.face_fields.iter();
+    let names: Vec<&str> = fields.map(|field| field.name.as_str()).collect();
+    Failure::input(format!("the result has no field '{name}'"))
+        .with_help(format!("it has: {}", names.join(", ")))
+}
+
+/// Unit and colours of a field.
+pub(crate) fn color_map(name: &str) -> (&'static str, ColorMap) {
+    match name {
+        "bending_energy_density" => ("J/m²", ColorMap::Viridis),
+        "mean_curvature" => ("1/m", ColorMap::CoolWarm),
+        _ => ("", ColorMap::Viridis),
+    }
+}
+
 /// The range that covers most values: about zero if there are negative ones, else from zero.
-fn color_range(values: Vec<f64>) -> Option<(f64, f64)> {
+pub(crate) fn color_range(values: Vec<f64>) -> Option<(f64, f64)> {
     let mut sizes: Vec<f64> = values
         .iter()
         .filter(|value| value.is_finite())

@@ -42,8 +42,15 @@ impl Rgb {
         Some(Self(part(16), part(8), part(0)))
     }
 
+    /// Amounts of light: what other programs and formats calculate with.
+    #[must_use]
+    pub fn linear(self) -> [f32; 3] {
+        [self.0, self.1, self.2].map(linear)
+    }
+
     pub(crate) fn to_linear(self) -> Vec3 {
-        vec3(linear(self.0), linear(self.1), linear(self.2))
+        let [r, g, b] = self.linear();
+        vec3(r, g, b)
     }
 
     pub(crate) fn lerp(self, other: Self, t: f32) -> Self {

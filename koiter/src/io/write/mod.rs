@@ -1,12 +1,14 @@
-//! Mesh files out: OBJ, PLY with fields, VTU with fields, and PVD for a series of VTU files.
+//! Mesh files out: OBJ, PLY with fields, VTU with fields, PVD for a series of VTU files, GLB for stills and films.
 //!
 //! Each format has a function from mesh to bytes and one that writes the bytes to a file, whole or not at all.
 //! Lengths are metres; the up axis is stated in a comment where the format has comments.
 
+mod glb;
 mod obj;
 mod ply;
 mod vtu;
 
+pub use glb::{GlbLook, MAX_GLB_FRAMES, glb_bytes, glb_frames, write_glb};
 pub use obj::{obj_bytes, write_obj};
 pub use ply::{ply_bytes, write_ply};
 pub use vtu::{pvd_bytes, vtu_bytes, write_pvd, write_vtu, write_vtu_series};
@@ -76,6 +78,12 @@ pub enum WriteError {
         vertex: u32,
         /// Number of vertices.
         num_vertices: usize,
+    },
+    /// More than the format can hold.
+    #[error("the result is too large: {what}; export one frame, or another format")]
+    TooLarge {
+        /// What the format holds.
+        what: &'static str,
     },
     /// A frame to be exported could not be read.
     #[error(transparent)]
