@@ -7,7 +7,7 @@ use std::str::FromStr;
 use koiter::Vec3;
 use koiter::io::crc32;
 use koiter::io::read::MeshFormat;
-use koiter::io::result::{Frame, Manifest, decode_stats, decode_topology};
+use koiter::io::result::{Checkpoint, Frame, Manifest, decode_stats, decode_topology};
 use koiter::mesh::{OrientationPolicy, Surface, SurfaceOptions, UnreferencedPolicy};
 use koiter::scene::{MeshSource, Scene, SceneFile, UnreadableMesh};
 
@@ -32,11 +32,13 @@ pub enum Target {
     Frame,
     /// `stats.jsonl` of a result.
     Stats,
+    /// `checkpoint.bin` of a result.
+    Checkpoint,
 }
 
 impl Target {
     /// All readers.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Obj,
         Self::Ply,
         Self::Stl,
@@ -46,6 +48,7 @@ impl Target {
         Self::Topology,
         Self::Frame,
         Self::Stats,
+        Self::Checkpoint,
     ];
 
     /// What it is called on the command line; its corpus is in the folder of this name.
@@ -60,6 +63,7 @@ impl Target {
             Self::Topology => "topology",
             Self::Frame => "frame",
             Self::Stats => "stats",
+            Self::Checkpoint => "checkpoint",
         }
     }
 
@@ -81,6 +85,7 @@ impl Target {
                 Frame::decode(bytes).is_ok_and(|frame| frame.check(4, 2).is_ok())
             }),
             Self::Stats => decode_stats(bytes).is_ok(),
+            Self::Checkpoint => with_checksum(bytes, read_checkpoint),
         }
     }
 
@@ -99,7 +104,9 @@ impl Target {
             Self::Manifest | Self::Stats => &[
                 "{", "}", "[", "]", "\"", ":", ",", "null", "\\u0000", "1e999",
             ],
-            Self::Topology | Self::Frame => &["KOITERTP", "KOITERFR"],
+            Self::Topology | Self::Frame | Self::Checkpoint => {
+                &["KOITERTP", "KOITERFR", "KOITERCP"]
+            }
         }
     }
 }
@@ -274,6 +281,19 @@ fn read_scene(bytes: &[u8]) -> bool {
             false
         }
     }
+}
+
+fn read_checkpoint(bytes: &[u8]) -> bool {
+    let Ok(checkpoint) = Checkpoint::from_bytes(bytes) else {
+        return false;
+    };
+    // Bits are kept, those of NaN too; one byte, which says whether there is contact, may have been any but 1.
+    let again = Checkpoint::from_bytes(&checkpoint.to_bytes());
+    assert!(
+        again.is_ok(),
+        "a checkpoint that was read is written as none"
+    );
+    true
 }
 
 /// Reads bytes as they are, and with their last four bytes replaced by the right checksum: it must not be the only guard.

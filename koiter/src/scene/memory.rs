@@ -110,6 +110,9 @@ fn generated_faces(spec: &MeshSpec) -> f64 {
         spec.torus
             .as_ref()
             .map(|g| face_count::cells(g.around, g.tube)),
+        spec.vee
+            .as_ref()
+            .map(|g| 2.0 * face_count::cells(g.along, g.across)),
         spec.cap.as_ref().map(|g| {
             let hole = g.hole_degrees.map_or(0.0, radians);
             face_count::spherical_cap(radians(g.degrees), hole, g.rings)
@@ -154,6 +157,7 @@ mod tests {
             "cone = { base_radius = 1.0, height = 2.0, around = 40, along = 20 }",
             "icosphere = { radius = 1.0, subdivisions = 3 }",
             "torus = { major_radius = 1.0, minor_radius = 0.3, around = 40, tube = 20 }",
+            "vee = { length = 1.0, width = 0.5, degrees = 90.0, along = 20, across = 10 }",
             "cap = { radius = 1.0, degrees = 80.0, hole_degrees = 10.0, rings = 15 }",
         ] {
             let spec = &scene(mesh).spec.shell[0].mesh;

@@ -86,14 +86,18 @@ fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     std::iter::from_fn(move || {
         let (index, line) = lines.next()?;
         let mut content = Cow::Borrowed(line.trim_end());
-        while let Some(head) = content.strip_suffix('\\') {
-            let mut joined = head.to_string();
+        let mut is_continued = content.ends_with('\\');
+        while is_continued {
+            // Grown in place: a file may continue one line a million times.
+            let joined = content.to_mut();
+            joined.pop();
             joined.push(' ');
-            match lines.next() {
-                Some((_, next)) => joined.push_str(next.trim_end()),
-                None => return Some((index + 1, Cow::Owned(joined))),
-            }
-            content = Cow::Owned(joined);
+            let Some((_, next)) = lines.next() else {
+                break;
+            };
+            let next = next.trim_end();
+            joined.push_str(next);
+            is_continued = next.ends_with('\\');
         }
         match content.find('#') {
             Some(comment) => Some((index + 1, Cow::Owned(content[..comment].to_string()))),

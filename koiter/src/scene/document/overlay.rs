@@ -97,6 +97,15 @@ fn expect_table(node: Node, path: &str) -> Result<Table, SceneError> {
     }
 }
 
+/// A part of a dotted path, and where it was typed.
+struct Segment {
+    name: String,
+    location: Location,
+}
+
+/// Longer paths than any scene has; without a bound the tables they make could be nested deeper than the stack.
+const LONGEST_PATH: usize = 32;
+
 /// Applies every entry of an overlay.
 fn merge(root: &mut Node, overlay: Table) -> Result<(), SceneError> {
     for entry in overlay.entries {
@@ -105,50 +114,65 @@ fn merge(root: &mut Node, overlay: Table) -> Result<(), SceneError> {
     Ok(())
 }
 
-fn merge_entry(root: &mut Node, entry: Entry, prefix: &mut Vec<String>) -> Result<(), SceneError> {
+fn merge_entry(root: &mut Node, entry: Entry, prefix: &mut Vec<Segment>) -> Result<(), SceneError> {
     let depth = prefix.len();
-    prefix.extend(entry.key.split('.').map(ToOwned::to_owned));
+    prefix.extend(entry.key.split('.').map(|name| Segment {
+        name: name.to_owned(),
+        location: entry.key_location.clone(),
+    }));
+    if prefix.len() > LONGEST_PATH {
+        let message = format!("this path has more than {LONGEST_PATH} keys");
+        return Err(SceneError::new(SceneErrorKind::UnknownKey, message)
+            .or_at(Some(&entry.key_location))
+            .with_help("a path is that of a value in the scene, such as shell.cloth.thickness"));
+    }
     let dotted = matches!(&entry.node.value, Value::Table(table) if table.dotted);
     if dotted && let Value::Table(table) = entry.node.value {
         for inner in table.entries {
             merge_entry(root, inner, prefix)?;
         }
     } else {
-        set(root, prefix, &entry.key_location, entry.node)?;
+        set(root, prefix, entry.node)?;
     }
     prefix.truncate(depth);
     Ok(())
 }
 
 /// Sets the value at a path, making tables on the way.
-fn set(
-    root: &mut Node,
-    path: &[String],
-    key_location: &Location,
-    value: Node,
-) -> Result<(), SceneError> {
+fn set(root: &mut Node, path: &[Segment], value: Node) -> Result<(), SceneError> {
+    let dotted = |path: &[Segment]| {
+        let names: Vec<&str> = path.iter().map(|segment| segment.name.as_str()).collect();
+        names.join(".")
+    };
     let mut node = root;
-    for (depth, segment) in path.iter().enumerate() {
-        let here = path[..depth].join(".");
-        let description = node.describe();
+    for (depth, Segment { name, location }) in path.iter().enumerate() {
+        let refuse = |kind, message| {
+            SceneError::new(kind, message)
+                .inside(&dotted(path))
+                .or_at(Some(location))
+        };
+        let here = &path[..depth];
+        let description = match node.value {
+            Value::Table(_) | Value::List(_) => String::new(),
+            _ => node.describe(),
+        };
         node = match &mut node.value {
-            Value::Table(table) => entry_or_table(table, segment, key_location),
-            Value::List(items) => match find_element(items, segment) {
+            Value::Table(table) => entry_or_table(table, name, location),
+            Value::List(items) => match find_element(items, name) {
                 Some(index) => &mut items[index],
                 None => {
                     let names: Vec<&str> = items.iter().filter_map(Node::name).collect();
-                    let message = format!("there is no {here} '{segment}'");
-                    return Err(SceneError::new(SceneErrorKind::UnknownName, message)
-                        .inside(&path.join("."))
-                        .or_at(Some(key_location))
-                        .with_help(suggest(segment, &names)));
+                    let message = format!("there is no {} '{name}'", dotted(here));
+                    return Err(refuse(SceneErrorKind::UnknownName, message)
+                        .with_help(suggest(name, &names)));
                 }
             },
             _ => {
-                let message = format!("'{here}' is {description}: it has no key '{segment}'");
-                return Err(SceneError::new(SceneErrorKind::WrongType, message)
-                    .inside(&path.join("."))
-                    .or_at(Some(key_location)));
+                let message = format!(
+                    "'{}' is {description}: it has no key '{name}'",
+                    dotted(here)
+                );
+                return Err(refuse(SceneErrorKind::WrongType, message));
             }
         };
     }

@@ -97,7 +97,7 @@ fn mistakes_in_overrides_point_into_the_override() {
         (
             "shell.clot.thickness=1",
             Kind::UnknownName,
-            "thickness",
+            "clot",
             "did you mean 'cloth'",
         ),
         (
@@ -115,10 +115,13 @@ fn mistakes_in_overrides_point_into_the_override() {
         (
             "shells.cloth.thickness=1",
             Kind::UnknownKey,
-            "",
+            "shells",
             "did you mean 'shell'",
         ),
     ];
+    let deep = format!("\"{}\"=1", "a.".repeat(100_000));
+    let error = parse(&[&deep]).unwrap_err();
+    assert!(error.message.contains("more than 32 keys"), "{error}");
     for (text, kind, marked, words) in cases {
         let error = parse(&[text]).unwrap_err();
         let location = error.location.clone().unwrap();

@@ -1,5 +1,7 @@
 //! Checks that need no mesh: ranges, names, and keys that must stand alone.
 
+use std::collections::HashSet;
+
 use super::{
     ConstraintSpec, FIELD_NAMES, MeshSpec, ObstacleSpec, ProbeQuantity, ProbeSpec, RotationSpec,
     SceneSpec, SelectSpec, ShellSpec,
@@ -256,10 +258,10 @@ fn check_constraint(path: &str, constraint: &ConstraintSpec, spec: &SceneSpec) -
 }
 
 fn check_shell_name(path: &str, name: &str, spec: &SceneSpec) -> Checked {
-    let names: Vec<&str> = spec.shell.iter().map(|shell| shell.name.as_str()).collect();
-    if names.contains(&name) {
+    if spec.shell.iter().any(|shell| shell.name == name) {
         return Ok(());
     }
+    let names: Vec<&str> = spec.shell.iter().map(|shell| shell.name.as_str()).collect();
     Err(error(
         Kind::UnknownName,
         path,
@@ -418,7 +420,7 @@ fn check_output(spec: &SceneSpec) -> Checked {
 }
 
 fn unique<'a>(list: &str, names: impl Iterator<Item = Option<&'a str>>) -> Checked {
-    let mut seen: Vec<&str> = Vec::new();
+    let mut seen = HashSet::new();
     for (index, name) in names.enumerate() {
         let Some(name) = name else { continue };
         let path = format!("{list}.{index}.name");
@@ -428,14 +430,13 @@ fn unique<'a>(list: &str, names: impl Iterator<Item = Option<&'a str>>) -> Check
                 format!("\"{name}\" is no name: use letters, digits, '-' and '_', not only digits");
             return Err(error(Kind::UnknownName, &path, message));
         }
-        if seen.contains(&name) {
+        if !seen.insert(name) {
             return Err(error(
                 Kind::Conflict,
                 &path,
                 format!("there are two {list}s named '{name}'"),
             ));
         }
-        seen.push(name);
     }
     Ok(())
 }
