@@ -45,9 +45,16 @@ Examples:
   koiter run sphere-drape --set resolution=tiny --out quick
   koiter run sphere-drape --set shell.cloth.material=paper --set time.end=2
   koiter run my/scene.toml --until 0.5 --no-film --json
+  koiter run my/scene.toml --resume            goes on after Ctrl-C, a kill or a full disk
+  koiter run my/scene.toml --resume --until 5  goes on beyond the end that was reached
 
 The result folder holds manifest.json, topology.bin, frames/, stats.jsonl (a line a step), probes.csv and
-summary.json; a result that is there already is replaced.")]
+summary.json; a result that is there already is replaced, but not an interrupted run of the same scene.
+
+checkpoint.bin is where --resume goes on: written after a step once output.checkpoint_seconds (10 s) have gone by,
+at the end, and on Ctrl-C or SIGTERM, which end the run after the present step. A second Ctrl-C ends it at once,
+with the last checkpoint whole. --resume refuses a checkpoint of another scene or version; title, time.end,
+output.camera, output.color and output.checkpoint_seconds may differ.")]
 pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
@@ -57,6 +64,12 @@ pub(crate) struct RunArguments {
     /// Stop at this simulated time [s]
     #[arg(long, value_name = "T")]
     pub(crate) until: Option<f64>,
+    /// Go on with a run that was interrupted, to the same bits as one that was not
+    #[arg(long)]
+    pub(crate) resume: bool,
+    /// Begin again where the result folder holds an interrupted run of this scene, and replace it
+    #[arg(long, conflicts_with = "resume")]
+    pub(crate) restart: bool,
     /// Number of threads [default: all cores]; the result is the same bits for any number
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     pub(crate) threads: Option<usize>,

@@ -1,10 +1,11 @@
 //! `probes.csv`: a row a step.
 
-use std::fs::File;
+use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::Path;
 
 use koiter::Vec3;
+use koiter::io::result::{ResultError, keep_lines};
 use koiter::scene::Simulation;
 use koiter::scene::{Observable, Probe};
 use serde_json::{Map, Value, json};
@@ -31,6 +32,45 @@ impl<'a> ProbeWriter<'a> {
             file,
             last: Vec::new(),
         })
+    }
+
+    /// Goes on after `rows` rows with the last values of all columns.
+    ///
+    /// # Errors
+    /// Fewer rows, other columns, a refusal of the system.
+    pub(crate) fn resume(
+        folder: &Path,
+        probes: &'a [Probe],
+        rows: usize,
+        last_row: &[f64],
+    ) -> Result<Self, ResultError> {
+        let path = folder.join("probes.csv");
+        let mut file = None;
+        if !probes.is_empty() {
+            keep_lines(&path, 1 + rows)?;
+            let opened = OpenOptions::new().append(true).open(&path);
+            file = Some(opened.map_err(|source| ResultError::Io {
+                action: "open",
+                path,
+                source,
+            })?);
+        }
+        let mut values = last_row.iter().copied();
+        let last = probes
+            .iter()
+            .map(|probe| values.by_ref().take(probe.columns().len()).collect())
+            .collect();
+        Ok(Self { probes, file, last })
+    }
+
+    /// Brings all rows to the disk.
+    pub(crate) fn sync(&self) -> io::Result<()> {
+        self.file.as_ref().map_or(Ok(()), File::sync_data)
+    }
+
+    /// The values of the last row.
+    pub(crate) fn last_row(&self) -> Vec<f64> {
+        self.last.concat()
     }
 
     /// Measures and writes a row; it is on its way to the disk when this returns.

@@ -1,7 +1,9 @@
 //! `koiter run`: from a scene to a result folder, figures, pictures and a film.
 
+mod beginning;
 mod progress;
 mod record;
+mod recorder;
 mod start;
 
 pub(crate) use start::start;
@@ -10,10 +12,8 @@ use crate::output::{say, say_error};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
-use koiter::integrate::{StepError, StepReport};
-use koiter::io::result::{Field, Frame, ResultError, ResultWriter};
+use koiter::integrate::StepReport;
 use koiter::scene::Scene;
 use koiter::scene::Simulation;
 use koiter::scene::spec::MAX_STEPS;
@@ -21,10 +21,11 @@ use koiter::scene::spec::MAX_STEPS;
 use crate::arguments::RunArguments;
 use crate::failure::Failure;
 use crate::pictures;
-use crate::probes::ProbeWriter;
-use crate::scene_source::{LoadedScene, load};
+use crate::scene_source::load;
+use beginning::Beginning;
 use progress::Progress;
-use record::{StatsLine, Summary, decimal_time};
+use record::decimal_time;
+use recorder::Recorder;
 
 /// Runs a scene.
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
@@ -37,10 +38,24 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("results").join(&loaded.name));
-    let simulation = start(&loaded.scene.model, arguments.debug_mesh.as_deref())?;
+    let beginning = beginning::find(arguments, &folder, &loaded, num_steps)?;
+    if let Beginning::Finished(summary) = beginning {
+        return beginning::say_finished(arguments, &folder, &summary);
+    }
+    let mut simulation = start(&loaded.scene.model, arguments.debug_mesh.as_deref())?;
     let interrupted = watch_for_interrupt();
-    let mut recorder = Recorder::create(&folder, &loaded, &simulation, num_steps)?;
-    let mut progress = Progress::new(num_steps, arguments.quiet);
+    let mut recorder = match beginning {
+        Beginning::Checkpoint(checkpoint) => {
+            simulation
+                .restore(&checkpoint.snapshot)
+                .map_err(|error| Failure::input(error).with_help(beginning::BEGIN_AGAIN))?;
+            // A run that went further than it is now to go is not cut back.
+            let num_steps = num_steps.max(simulation.step_count());
+            Recorder::resume(&folder, &loaded, &simulation, num_steps, &checkpoint.totals)?
+        }
+        _ => Recorder::create(&folder, &loaded, &simulation, num_steps)?,
+    };
+    let mut progress = Progress::new(num_steps, simulation.step_count(), arguments.quiet);
     let end = advance(
         simulation,
         num_steps,
@@ -49,8 +64,16 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         &interrupted,
     );
     progress.finish();
-    recorder.write_summary()?;
-    let made = match arguments.no_film {
+    let summary_written = recorder.write_summary();
+    if let Err(failure) = end.and(summary_written) {
+        return Err(match recorder.has_checkpoint() {
+            true => failure.with_help(beginning::how_to_go_on()),
+            false => failure,
+        });
+    }
+    // All is saved: Ctrl-C now ends the program at once.
+    let interrupted = interrupted.swap(true, Ordering::Relaxed) && recorder.summary.interrupted;
+    let made = match arguments.no_film || interrupted {
         true => Vec::new(),
         false => pictures::after_run(&folder, &loaded.scene.output, arguments.quiet)?,
     };
@@ -60,13 +83,12 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
     } else if !arguments.quiet {
         recorder.summary.print(&folder, &made);
     }
-    end?;
     if recorder.summary.interrupted {
         let message = format!(
-            "interrupted after step {}; the result up to there is whole",
+            "interrupted after step {} of {num_steps}; the result up to there is whole",
             recorder.summary.steps
         );
-        return Err(Failure::run(message));
+        return Err(Failure::run(message).with_help(beginning::how_to_go_on()));
     }
     if recorder.unconverged > 0 {
         let message = format!(
@@ -119,7 +141,7 @@ fn watch_for_interrupt() -> Arc<AtomicBool> {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(1);
         }
-        say_error!("ending after this step; Ctrl-C again ends at once");
+        say_error!("ending after this step, which saves the run; Ctrl-C again ends at once");
     });
     interrupted
 }
@@ -132,7 +154,7 @@ fn advance(
     interrupted: &AtomicBool,
 ) -> Result<(), Failure> {
     let mut simulation = simulation;
-    for step in 1..=num_steps {
+    for step in simulation.step_count() + 1..=num_steps {
         let report = match simulation.step(recorder.scene.dt) {
             Ok(report) => StepReport {
                 time: decimal_time(report.step, recorder.scene.dt),
@@ -152,123 +174,4 @@ fn advance(
         }
     }
     Ok(())
-}
-
-/// Writes what a run yields.
-struct Recorder<'a> {
-    scene: &'a Scene,
-    writer: ResultWriter,
-    probes: ProbeWriter<'a>,
-    summary: Summary,
-    unconverged: usize,
-    started: Instant,
-}
-
-impl<'a> Recorder<'a> {
-    fn create(
-        folder: &std::path::Path,
-        loaded: &'a LoadedScene,
-        simulation: &Simulation,
-        num_steps: usize,
-    ) -> Result<Self, Failure> {
-        let (manifest, faces) = start::manifest(loaded, simulation);
-        let writer = ResultWriter::create(folder, &manifest, &faces).map_err(writing)?;
-        let scene = &loaded.scene;
-        let cannot_write = |error: std::io::Error| {
-            Failure::run(format!(
-                "cannot write {}: {error}",
-                folder.join("probes.csv").display()
-            ))
-        };
-        let probes = ProbeWriter::create(folder, &scene.probes).map_err(cannot_write)?;
-        let summary = Summary::new(&simulation.stats(), num_steps, scene.model.contact.enabled);
-        let started = Instant::now();
-        let mut recorder = Self {
-            scene,
-            writer,
-            probes,
-            summary,
-            unconverged: 0,
-            started,
-        };
-        recorder.write_frame(simulation)?;
-        recorder.write_probes(simulation)?;
-        Ok(recorder)
-    }
-
-    /// Writes a step's figures, and its frame if it is due.
-    fn record(
-        &mut self,
-        simulation: &Simulation,
-        report: &StepReport,
-        is_last: bool,
-    ) -> Result<(), Failure> {
-        self.writer
-            .append_stats(&StatsLine::new(report))
-            .map_err(writing)?;
-        self.write_probes(simulation)?;
-        if is_last || report.step.is_multiple_of(self.scene.frame_steps) {
-            self.write_frame(simulation)?;
-        }
-        self.summary.add(report);
-        if !report.converged {
-            self.unconverged += 1;
-            // Once a run: the others are counted at its end, and told one by one in stats.jsonl.
-            if self.unconverged == 1 {
-                let diagnosis = report.diagnosis.as_deref().unwrap_or("no diagnosis");
-                log::warn!(target: "koiter", "step {} did not converge: {diagnosis}", report.step);
-            }
-        }
-        Ok(())
-    }
-
-    fn write_frame(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        let wanted = |name: &str| self.scene.output.fields.iter().any(|field| field == name);
-        let fields = simulation
-            .face_fields()
-            .into_iter()
-            .filter(|(name, _)| wanted(name));
-        let frame = Frame {
-            step: simulation.step_count() as u64,
-            time: decimal_time(simulation.step_count(), self.scene.dt),
-            positions: simulation.display_positions(),
-            vertex_fields: Vec::new(),
-            face_fields: fields
-                .map(|(name, values)| Field {
-                    name: name.to_owned(),
-                    values,
-                })
-                .collect(),
-        };
-        self.writer.write_frame(&frame).map_err(writing)
-    }
-
-    fn write_probes(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        let time = decimal_time(simulation.step_count(), self.scene.dt);
-        self.probes
-            .write(simulation, time)
-            .map_err(|error| Failure::run(format!("cannot write probes.csv: {error}")))
-    }
-
-    fn note_error(&mut self, error: &StepError) {
-        self.summary.converged = false;
-        if matches!(error, StepError::Intersection { .. }) {
-            self.summary.intersections = self.summary.intersections.map(|count| count + 1);
-        }
-    }
-
-    fn write_summary(&mut self) -> Result<(), Failure> {
-        self.summary
-            .finish(self.started.elapsed(), self.probes.last_values());
-        self.writer.write_summary(&self.summary).map_err(writing)
-    }
-}
-
-fn writing(error: ResultError) -> Failure {
-    match error {
-        ResultError::NotEmpty { .. } => {
-            Failure::input(error).with_help("choose another folder with --out")
-        }
-        error => Failure::run(error),
-    }
 }

@@ -6,7 +6,7 @@ use koiter::io::read::{MeshFormat, RawMesh, ReadError};
 use koiter::io::read_mesh;
 use koiter::mesh::{MeshError, Surface, SurfaceOptions};
 use koiter::scene::{
-    MeshSource, Scene, SceneError, SceneErrorKind, SceneFile, UnreadableMesh, nearest,
+    Document, MeshSource, Scene, SceneError, SceneErrorKind, SceneFile, UnreadableMesh, nearest,
 };
 use koiter_render::CameraView;
 
@@ -62,6 +62,8 @@ pub(crate) struct LoadedScene {
     pub(crate) name: String,
     /// The scene as it is run, overrides included.
     pub(crate) text: String,
+    /// The same with the places of its keys.
+    pub(crate) document: Document,
     /// The checked scene.
     pub(crate) scene: Scene,
 }
@@ -76,6 +78,7 @@ pub(crate) fn load(arguments: &SceneArguments) -> Result<LoadedScene, Failure> {
     Ok(LoadedScene {
         name: found.name,
         text: file.document.to_toml(),
+        document: file.document,
         scene,
     })
 }

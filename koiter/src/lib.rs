@@ -16,5 +16,8 @@ pub mod solve;
 #[cfg(feature = "testing")]
 pub mod testing;
 
+/// Version of this library.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 /// A point or vector in space, in metres unless said otherwise.
 pub type Vec3 = nalgebra::Vector3<f64>;

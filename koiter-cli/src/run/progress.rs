@@ -10,7 +10,7 @@ pub(super) struct Progress {
 
 impl Progress {
     /// indicatif draws nothing when standard error is no terminal.
-    pub(super) fn new(num_steps: usize, quiet: bool) -> Self {
+    pub(super) fn new(num_steps: usize, done: usize, quiet: bool) -> Self {
         let bar = match quiet {
             true => ProgressBar::hidden(),
             false => ProgressBar::new(num_steps as u64),
@@ -19,6 +19,9 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
+        // Steps of an earlier run do not count for the time left.
+        bar.set_position(done as u64);
+        bar.reset_eta();
         bar.set_message("first step");
         bar.tick();
         Self { bar }

@@ -2,9 +2,9 @@
 
 use crate::output::say;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use koiter::integrate::StepReport;
+use koiter::io::result::Totals;
 use koiter::scene::SystemStats;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -64,7 +64,7 @@ pub(super) struct Summary {
     pub(super) time: f64,
     pub(super) seconds: f64,
     #[serde(serialize_with = "as_map")]
-    pub(super) seconds_by_part: Vec<(&'static str, f64)>,
+    pub(super) seconds_by_part: Vec<(String, f64)>,
     pub(super) newton_iterations: usize,
     pub(super) min_gap: f64,
     /// `null` where contact is off and nothing was checked.
@@ -117,14 +117,36 @@ impl Summary {
                 .find(|(name, _)| *name == part)
             {
                 Some((_, sum)) => *sum += seconds,
-                None => self.seconds_by_part.push((part, seconds)),
+                None => self.seconds_by_part.push((part.to_owned(), seconds)),
             }
         }
     }
 
+    /// Goes on after `step` steps that added up to `totals`.
+    pub(super) fn take_up(&mut self, step: usize, dt: f64, totals: &Totals) {
+        self.steps = step;
+        self.time = decimal_time(step, dt);
+        self.newton_iterations = totals.newton_iterations as usize;
+        self.min_gap = totals.min_gap;
+        self.intersections = self.intersections.map(|_| totals.intersections as usize);
+        self.converged = totals.unconverged == 0;
+        self.seconds_by_part = totals.seconds_by_part.clone();
+    }
+
+    /// What a checkpoint keeps of the sums.
+    pub(super) fn totals(&self) -> Totals {
+        Totals {
+            newton_iterations: self.newton_iterations as u64,
+            intersections: self.intersections.unwrap_or(0) as u64,
+            min_gap: self.min_gap,
+            seconds_by_part: self.seconds_by_part.clone(),
+            ..Totals::default()
+        }
+    }
+
     /// Adds what is known at the end.
-    pub(super) fn finish(&mut self, elapsed: Duration, probes: Value) {
-        self.seconds = elapsed.as_secs_f64();
+    pub(super) fn finish(&mut self, seconds: f64, probes: Value) {
+        self.seconds = seconds;
         self.probes = probes;
         self.peak_memory_bytes = memory::peak_bytes();
     }
@@ -172,8 +194,8 @@ pub(super) fn decimal_time(step: usize, dt: f64) -> f64 {
     format!("{time:.14e}").parse().unwrap_or(time)
 }
 
-fn as_map<S: Serializer>(
-    pairs: &impl AsRef<[(&'static str, f64)]>,
+fn as_map<S: Serializer, N: Serialize>(
+    pairs: &impl AsRef<[(N, f64)]>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
     let pairs = pairs.as_ref();
@@ -247,7 +269,7 @@ mod tests {
             (summary.steps, summary.newton_iterations, summary.min_gap),
             (2, 10, 0.5)
         );
-        assert_eq!(summary.seconds_by_part, [("solve", 1.0)]);
+        assert_eq!(summary.seconds_by_part, [("solve".to_owned(), 1.0)]);
         assert!(!summary.converged);
     }
 }

@@ -27,7 +27,7 @@ pub use frame::{Field, Frame, FrameInfo};
 pub use manifest::{Manifest, Part, PartKind, UpAxis};
 pub use reader::{ResultReader, decode_stats};
 pub use topology_file::decode_topology;
-pub use writer::ResultWriter;
+pub use writer::{ResultWriter, keep_lines};
 
 use std::path::{Path, PathBuf};
 

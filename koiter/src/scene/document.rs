@@ -4,8 +4,10 @@
 //! [`Document::locate`] is the one place where a path becomes a place in a text. Elements of a list are addressed by
 //! their `name`, or by their number from 0.
 
+pub use difference::Difference;
 pub(super) use overlay::suggest;
 
+mod difference;
 mod overlay;
 mod parse;
 mod short_form;

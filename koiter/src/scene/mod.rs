@@ -47,12 +47,12 @@ pub use self::{
 #[cfg(feature = "serde")]
 pub use self::{
     build::Scene,
-    document::Document,
+    document::{Difference, Document},
     error::{Location, SceneError, SceneErrorKind, Source, Warning},
     nearest::nearest,
     placement::{MeshSource, NoFiles, UnreadableMesh},
     probe::{Observable, Probe, ProbeTarget},
     schema::json_schema,
     selection::{SelectionError, select},
-    spec::{SceneFile, SceneSpec},
+    spec::{KEYS_OF_NO_STEP, SceneFile, SceneSpec},
 };

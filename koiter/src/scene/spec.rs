@@ -402,6 +402,9 @@ pub struct OutputSpec {
     #[serde(default = "all_fields")]
     #[schemars(schema_with = "super::schema::field_names")]
     pub fields: Vec<String>,
+    /// A checkpoint after a step once so many seconds have gone by since the last; 0: after every step.
+    #[serde(default = "checkpoint_seconds")]
+    pub checkpoint_seconds: f64,
     /// View of the pictures: `front`, `side`, `top`, `iso`, or `azimuth=30,elevation=20,zoom=1.2`.
     #[serde(default)]
     pub camera: Option<String>,
@@ -417,6 +420,7 @@ impl Default for OutputSpec {
             every_steps: None,
             every_seconds: None,
             fields: all_fields(),
+            checkpoint_seconds: checkpoint_seconds(),
             camera: None,
             color: None,
         }
@@ -425,6 +429,21 @@ impl Default for OutputSpec {
 
 /// Names of the face fields a run can write.
 pub const FIELD_NAMES: [&str; 3] = ["strain", "bending_energy_density", "mean_curvature"];
+
+/// A kill loses at most so much work and a step; writing takes a hundredth of it at a million unknowns.
+fn checkpoint_seconds() -> f64 {
+    10.0
+}
+
+/// Keys that change no step and no frame: a run may go on with other values of them.
+pub const KEYS_OF_NO_STEP: [&str; 6] = [
+    "title",
+    "description",
+    "time.end",
+    "output.camera",
+    "output.color",
+    "output.checkpoint_seconds",
+];
 
 fn all_fields() -> Vec<String> {
     FIELD_NAMES.map(ToOwned::to_owned).to_vec()

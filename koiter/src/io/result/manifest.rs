@@ -35,7 +35,7 @@ pub struct Manifest {
 impl Default for Manifest {
     fn default() -> Self {
         Self {
-            version: env!("CARGO_PKG_VERSION").to_string(),
+            version: crate::VERSION.to_string(),
             title: String::new(),
             up_axis: UpAxis::default(),
             scene_text: String::new(),

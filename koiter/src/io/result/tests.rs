@@ -158,7 +158,7 @@ fn resumed_run_drops_what_came_after() {
             .len(),
         4
     );
-    let mut writer = ResultWriter::resume(folder.path(), 2, 3).unwrap();
+    let mut writer = ResultWriter::resume(folder.path(), &manifest(), 2, 3).unwrap();
     writer.write_frame(&frame(77)).unwrap();
     writer.append_stats(&json!({"step": 77})).unwrap();
     let reader = ResultReader::open(folder.path()).unwrap();
@@ -166,13 +166,13 @@ fn resumed_run_drops_what_came_after() {
     assert_eq!(reader.frame(2).unwrap().step, 77);
     assert_eq!(reader.stats().unwrap()[3], json!({"step": 77}));
     assert!(
-        ResultWriter::resume(folder.path(), 9, 0)
+        ResultWriter::resume(folder.path(), &manifest(), 9, 0)
             .unwrap_err()
             .to_string()
             .contains("no frame 8")
     );
     assert!(
-        ResultWriter::resume(folder.path(), 0, 99)
+        ResultWriter::resume(folder.path(), &manifest(), 0, 99)
             .unwrap_err()
             .to_string()
             .contains("4 complete")

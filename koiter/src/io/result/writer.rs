@@ -8,13 +8,13 @@ use serde::Serialize;
 
 use super::error::while_trying;
 use super::{
-    FRAMES, Frame, MANIFEST, Manifest, ResultError, ResultReader, STATS, SUMMARY, TOPOLOGY,
-    frame_path, topology_file,
+    CHECKPOINT, Checkpoint, FRAMES, Frame, MANIFEST, Manifest, ResultError, ResultReader, STATS,
+    SUMMARY, TOPOLOGY, frame_path, topology_file,
 };
 use crate::io::write_atomically;
 
-/// Other files of a run that belong to the old result when a folder is written anew.
-const COMPANIONS: [&str; 2] = ["checkpoint.bin", "probes.csv"];
+/// Another file of a run, which belongs to the old result when a folder is written anew.
+const PROBES: &str = "probes.csv";
 
 /// Writes a result folder, frame by frame.
 #[derive(Debug)]
@@ -57,24 +57,31 @@ impl ResultWriter {
         let frames = folder.join(FRAMES);
         fs::create_dir_all(&frames).map_err(while_trying("create the folder", &frames))?;
         // The manifest first: a kill from here on leaves a folder that is known as ours and can be written anew.
-        let path = folder.join(MANIFEST);
-        let json = manifest.to_json().map_err(|source| ResultError::Json {
-            path: path.clone(),
-            source,
-        })?;
-        write_atomically(&path, json.as_bytes()).map_err(while_trying("write", &path))?;
+        write_manifest(folder, manifest)?;
         let path = folder.join(TOPOLOGY);
         let bytes = topology_file::encode(manifest.num_vertices(), faces);
         write_atomically(&path, &bytes).map_err(while_trying("write", &path))?;
         Self::open_at(folder, manifest, 0)
     }
 
-    /// Goes on with an interrupted run: keeps the first `frames` frames and `stats` lines of figures, drops the rest.
+    /// Goes on with an interrupted run of the same parts: keeps the first `frames` frames and `stats` lines of figures,
+    /// drops the rest.
     ///
     /// # Errors
-    /// Not a result, fewer frames or lines than are to be kept, a refusal of the system.
-    pub fn resume(folder: &Path, frames: usize, stats: usize) -> Result<Self, ResultError> {
+    /// Not a result, or one of other parts; fewer frames or lines than are to be kept; a refusal of the system.
+    pub fn resume(
+        folder: &Path,
+        manifest: &Manifest,
+        frames: usize,
+        stats: usize,
+    ) -> Result<Self, ResultError> {
         let reader = ResultReader::open(folder)?;
+        if reader.manifest().parts != manifest.parts {
+            return Err(ResultError::Broken {
+                path: folder.join(MANIFEST),
+                reason: "its parts are not those of the run that is to go on".to_string(),
+            });
+        }
         if frames > reader.len() {
             let (index, len) = (frames - 1, reader.len());
             return Err(ResultError::NoFrame {
@@ -89,7 +96,9 @@ impl ResultWriter {
         }
         keep_lines(&folder.join(STATS), stats)?;
         remove_if_there(&folder.join(SUMMARY))?;
-        Self::open_at(folder, reader.manifest(), frames)
+        // The scene may have got a later end.
+        write_manifest(folder, manifest)?;
+        Self::open_at(folder, manifest, frames)
     }
 
     fn open_at(folder: &Path, manifest: &Manifest, num_frames: usize) -> Result<Self, ResultError> {
@@ -149,6 +158,19 @@ impl ResultWriter {
             .map_err(while_trying("write", &path))
     }
 
+    /// Writes `checkpoint.bin`, after all lines of figures are on the disk: what it says was done is there.
+    ///
+    /// # Errors
+    /// A refusal of the system; the checkpoint before is then still there.
+    pub fn write_checkpoint(&self, checkpoint: &Checkpoint) -> Result<(), ResultError> {
+        let path = self.folder.join(STATS);
+        self.stats
+            .sync_data()
+            .map_err(while_trying("write", &path))?;
+        let path = self.folder.join(CHECKPOINT);
+        write_atomically(&path, &checkpoint.to_bytes()).map_err(while_trying("write", &path))
+    }
+
     /// Writes `summary.json`.
     ///
     /// # Errors
@@ -163,6 +185,15 @@ impl ResultWriter {
     }
 }
 
+fn write_manifest(folder: &Path, manifest: &Manifest) -> Result<(), ResultError> {
+    let path = folder.join(MANIFEST);
+    let json = manifest.to_json().map_err(|source| ResultError::Json {
+        path: path.clone(),
+        source,
+    })?;
+    write_atomically(&path, json.as_bytes()).map_err(while_trying("write", &path))
+}
+
 /// Deletes what an old result consists of; refuses a folder that is not one. The manifest stays until it is replaced.
 fn clear_old_result(folder: &Path) -> Result<(), ResultError> {
     match Manifest::read(folder) {
@@ -175,8 +206,9 @@ fn clear_old_result(folder: &Path) -> Result<(), ResultError> {
         }
         Err(error) => return Err(error),
     }
-    // The topology first: without it a half-cleared result is not taken for a whole one.
-    for name in [TOPOLOGY, SUMMARY, STATS].into_iter().chain(COMPANIONS) {
+    // The checkpoint first: what follows it is gone. Then the topology: without it a half-cleared result is not taken
+    // for a whole one.
+    for name in [CHECKPOINT, TOPOLOGY, SUMMARY, STATS, PROBES] {
         remove_if_there(&folder.join(name))?;
     }
     let frames = folder.join(FRAMES);
@@ -204,7 +236,10 @@ fn remove_if_there(path: &Path) -> Result<(), ResultError> {
 }
 
 /// Cuts a text file after its first `count` lines; a last line that a kill cut short is no line.
-fn keep_lines(path: &Path, count: usize) -> Result<(), ResultError> {
+///
+/// # Errors
+/// Fewer lines, a refusal of the system.
+pub fn keep_lines(path: &Path, count: usize) -> Result<(), ResultError> {
     let bytes = match fs::read(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
         read => read.map_err(while_trying("read", path))?,

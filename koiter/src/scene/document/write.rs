@@ -44,7 +44,7 @@ fn push_entry(text: &mut String, key: &str, node: &Node) {
     let _ = writeln!(text, "{} = {}", quote_key(key), inline(node));
 }
 
-fn inline(node: &Node) -> String {
+pub(super) fn inline(node: &Node) -> String {
     match &node.value {
         Value::Bool(value) => value.to_string(),
         Value::Integer(value) => value.to_string(),

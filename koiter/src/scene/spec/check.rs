@@ -390,6 +390,7 @@ fn check_output(spec: &SceneSpec) -> Checked {
         ));
     }
     optional_positive("output.every_seconds", output.every_seconds, "s")?;
+    not_negative("output.checkpoint_seconds", output.checkpoint_seconds, "s")?;
     let fields = output
         .fields
         .iter()
