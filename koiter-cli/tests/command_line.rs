@@ -78,7 +78,7 @@ fn wrong_arguments_have_status_2() {
         &["run", "sphere-drape", "--threads", "65535"],
         &["run", "sphere-drape", "--film", "--no-film"],
         &["check", "sphere-drape", "--debug-mesh", "start.obj"],
-        &["run", "sphere-drape", "--resume"],
+        &["run", "sphere-drape", "--resume", "--restart"],
         &["render", "x", "-o", "a.png", "--size", "12"],
         &["export", "x", "--to", "docx", "-o", "a"],
     ];
