@@ -23,7 +23,10 @@ def bits(value):
 def arrays(data):
     found = {}
     for i in range(data.GetNumberOfArrays()):
-        array = data.GetArray(i)
+        array = data.GetAbstractArray(i)
+        if array.IsA("vtkStringArray"):
+            found[array.GetName()] = [array.GetValue(k) for k in range(array.GetNumberOfTuples())]
+            continue
         found[array.GetName()] = [bits(array.GetTuple1(k)) for k in range(array.GetNumberOfTuples())]
     return found
 

@@ -52,6 +52,12 @@ fn bits(values: impl IntoIterator<Item = f64>) -> Value {
         .collect()
 }
 
+/// 0 for the faces of the torus, 1 for those of the sheet.
+fn part_numbers(result: &ResultReader) -> Value {
+    let first_of_sheet = result.manifest().parts[1].faces.start;
+    bits((0..result.faces().len()).map(|face| f64::from(u8::from(face >= first_of_sheet))))
+}
+
 /// A torus and a sheet that move, with a field of vertices and one of faces.
 fn write_result(folder: &Path) {
     let torus = generate::torus(1.0 / 3.0, 0.1, 12, 6).unwrap();
@@ -140,6 +146,8 @@ fn vtk_reads_every_frame_of_a_series_bit_for_bit() {
         let (vertex, face) = (&frame.vertex_fields[0], &frame.face_fields[0]);
         assert_eq!(found["point_data"][&vertex.name], field_bits(vertex));
         assert_eq!(found["cell_data"][&face.name], field_bits(face));
+        assert_eq!(found["cell_data"]["part"], part_numbers(&result));
+        assert_eq!(found["field_data"]["part_names"], json!(["torus", "sheet"]));
     }
 }
 
@@ -169,6 +177,11 @@ fn vtk_reads_our_ply_and_obj() {
             return;
         };
         assert_eq!(found["cells"], json!(result.faces()), "{}", file.display());
+        if file.extension().is_some_and(|extension| extension == "ply") {
+            let text = String::from_utf8_lossy(&std::fs::read(&file).unwrap()).into_owned();
+            assert!(text.contains("comment part 0 torus\ncomment part 1 sheet\n"));
+            assert!(text.contains("property int part\nend_header"));
+        }
         assert!(
             found["points"] == exact || found["points"] == rounded,
             "{}",

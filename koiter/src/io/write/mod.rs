@@ -33,7 +33,7 @@ pub struct MeshWithFields<'a> {
     pub vertex_fields: &'a [Field],
     /// Values at faces.
     pub face_fields: &'a [Field],
-    /// Names of ranges of faces; OBJ makes objects of them.
+    /// Names of ranges of faces: objects in OBJ, in PLY and VTU the number of its part at every face, with a table of names.
     pub parts: &'a [Part],
     /// Which way is up.
     pub up_axis: UpAxis,
@@ -85,6 +85,16 @@ pub enum WriteError {
         /// What the format holds.
         what: &'static str,
     },
+    /// A part has faces that do not exist.
+    #[error("part '{name}' ends at face {end} of {num_faces}; correct its range")]
+    PartOutOfRange {
+        /// Name of the part.
+        name: String,
+        /// End of its faces.
+        end: usize,
+        /// Number of faces.
+        num_faces: usize,
+    },
     /// A frame to be exported could not be read.
     #[error(transparent)]
     Result(#[from] ResultError),
@@ -112,6 +122,18 @@ impl<'a> MeshWithFields<'a> {
         }
     }
 
+    /// The number of the part of every face, from 0; none without parts, −1 for a face of no part.
+    fn part_numbers(&self) -> Option<Vec<i32>> {
+        if self.parts.is_empty() {
+            return None;
+        }
+        let mut numbers = vec![-1; self.faces.len()];
+        for (number, part) in (0..).zip(self.parts) {
+            numbers[part.faces.clone()].fill(number);
+        }
+        Some(numbers)
+    }
+
     /// Checks what readers would choke on. `written_name` is what the format makes of a field's name; `taken` are names
     /// that it uses itself.
     fn check(
@@ -130,6 +152,15 @@ impl<'a> MeshWithFields<'a> {
                         num_vertices,
                     });
                 }
+            }
+        }
+        for part in self.parts {
+            if part.faces.end > self.faces.len() {
+                return Err(WriteError::PartOutOfRange {
+                    name: part.name.clone(),
+                    end: part.faces.end,
+                    num_faces: self.faces.len(),
+                });
             }
         }
         for (fields, expected, what) in [
@@ -157,6 +188,9 @@ impl<'a> MeshWithFields<'a> {
         Ok(())
     }
 }
+
+/// The name of the array of [`MeshWithFields::part_numbers`].
+const PART: &str = "part";
 
 /// The comment that most formats can hold.
 fn unit_comment(up_axis: UpAxis) -> &'static str {

@@ -77,6 +77,18 @@ fn files_say_units_axis_and_parts() {
     let header = String::from_utf8_lossy(&ply[..500.min(ply.len())]).to_string();
     assert!(header.contains("comment Koiter: lengths in metres, y up"));
     assert!(header.contains("property float contact_gap__m_"));
+    assert!(header.contains("comment part 0 left_sheet\ncomment part 1 right\n"));
+    assert!(header.contains("property int part\nend_header"));
+    // The part is the last word of each face.
+    assert!(ply.ends_with(&1_i32.to_le_bytes()));
+    assert_eq!(ply[ply.len() - 21 - 4..][..4], 0_i32.to_le_bytes());
+    assert_eq!(parse_ply(&ply).unwrap().faces, sample.faces);
+    let beyond = MeshWithFields {
+        parts: &[part("left sheet", 0..3)],
+        ..sample.mesh()
+    };
+    let text = vtu_bytes(&beyond, None).unwrap_err().to_string();
+    assert!(text.contains("'left sheet' ends at face 3 of 2"), "{text}");
 }
 
 #[test]

@@ -6,18 +6,20 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::{MeshWithFields, WriteError, unit_comment, write_file};
-use crate::io::result::ResultReader;
+use super::{MeshWithFields, PART, WriteError, unit_comment, write_file};
+use crate::io::result::{Part, ResultReader};
 
 /// The `types` entry of a triangle.
 const VTK_TRIANGLE: u8 = 5;
 
 /// The mesh as a VTU file: `Float64` points, `Float32` point and cell arrays, the time [s], if any, as `TimeValue`.
 ///
+/// With parts, the `Int32` cell array `part` numbers them from 0, and the field data has their names as `part_names`.
+///
 /// # Errors
 /// A face that uses a vertex that does not exist, a field of wrong length or with a name that is empty or taken.
 pub fn vtu_bytes(mesh: &MeshWithFields, time: Option<f64>) -> Result<Vec<u8>, WriteError> {
-    mesh.check(escaped, &[])?;
+    mesh.check(escaped, &[PART])?;
     let mut data = Appended::default();
     let mut xml = String::from("<?xml version=\"1.0\"?>\n");
     let mut line = |text: &str| {
@@ -29,15 +31,15 @@ pub fn vtu_bytes(mesh: &MeshWithFields, time: Option<f64>) -> Result<Vec<u8>, Wr
         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">",
     );
     line("<UnstructuredGrid>");
+    line("<FieldData>");
     if let Some(time) = time {
-        let array = data.array(
-            "Float64",
-            "TimeValue",
-            "NumberOfTuples=\"1\"",
-            time.to_le_bytes(),
-        );
-        line(&format!("<FieldData>\n{array}\n</FieldData>"));
+        let one = "NumberOfTuples=\"1\"";
+        line(&data.array("Float64", "TimeValue", one, time.to_le_bytes()));
     }
+    if !mesh.parts.is_empty() {
+        line(&names_array(mesh.parts));
+    }
+    line("</FieldData>");
     let (points, cells) = (mesh.positions.len(), mesh.faces.len());
     line(&format!(
         "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"
@@ -71,6 +73,10 @@ pub fn vtu_bytes(mesh: &MeshWithFields, time: Option<f64>) -> Result<Vec<u8>, Wr
         for field in fields {
             let bytes = field.values.iter().flat_map(|value| value.to_le_bytes());
             line(&data.array("Float32", &escaped(&field.name), "", bytes));
+        }
+        if let Some(numbers) = mesh.part_numbers().filter(|_| section == "CellData") {
+            let bytes = numbers.iter().flat_map(|number| number.to_le_bytes());
+            line(&data.array("Int32", PART, "", bytes));
         }
         line(&format!("</{section}>"));
     }
@@ -165,6 +171,20 @@ impl Appended {
             "<DataArray type=\"{scalar}\" Name=\"{name}\" {attributes} format=\"appended\" offset=\"{offset}\"/>"
         )
     }
+}
+
+/// The names of the parts: VTK writes text in XML as numbers, each string ended by a 0.
+fn names_array(parts: &[Part]) -> String {
+    let codes: Vec<String> = parts
+        .iter()
+        .flat_map(|part| part.name.bytes().filter(|&byte| byte != 0).chain([0]))
+        .map(|byte| byte.to_string())
+        .collect();
+    format!(
+        "<DataArray type=\"String\" Name=\"part_names\" NumberOfTuples=\"{}\" format=\"ascii\">\n{}\n</DataArray>",
+        parts.len(),
+        codes.join(" ")
+    )
 }
 
 /// A name as the value of an XML attribute; control characters, which XML cannot hold, are left out.
