@@ -1,8 +1,14 @@
 //! What can be typed.
 
+mod aids;
+
+pub(crate) use aids::{
+    CatalogueArguments, CompletionsArguments, ManArguments, NewArguments, PlotArguments, Template,
+};
+
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
 /// Thin shells: cloth, paper, cans and leaves, with bending that converges and contact that never intersects.
 #[derive(Debug, Parser)]
@@ -15,6 +21,7 @@ Examples:
   koiter run sphere-drape                      a cotton square falls on a ball: frames, figures, a film
   koiter run my/scene.toml --set time.end=2    any value of a scene can be set from here
   koiter check my/scene.toml                   reads and checks everything, runs nothing
+  koiter new my                                writes a commented scene, my/scene.toml
 
 Exit status: 0 done, 1 the run failed, 2 the input is wrong."
 )]
@@ -33,6 +40,28 @@ pub(crate) enum Verb {
     Render(RenderArguments),
     /// Writes a result in a format that other programs open.
     Export(ExportArguments),
+    /// Draws the figures of a run: energies, iterations, seconds, contacts.
+    Plot(PlotArguments),
+    /// Writes a commented scene to start from.
+    New(NewArguments),
+    /// Lists the materials that scenes can name.
+    #[command(after_help = "Examples:\n  koiter materials\n  koiter materials --json")]
+    Materials(CatalogueArguments),
+    /// Lists the bending models that scenes can name.
+    #[command(after_help = "Examples:\n  koiter models\n  koiter models --json")]
+    Models(CatalogueArguments),
+    /// Prints the JSON Schema of scene files, by which editors complete and check them.
+    #[command(after_help = "\
+Examples:
+  koiter schema > koiter.schema.json
+
+With `#:schema koiter.schema.json` as the first line of a scene, editors that know Taplo (VS Code with Even Better TOML,
+and others) complete its keys and mark mistakes.")]
+    Schema,
+    /// Prints completions for a shell.
+    Completions(CompletionsArguments),
+    /// Prints or writes manual pages.
+    Man(ManArguments),
 }
 
 #[derive(Debug, Args)]
@@ -110,6 +139,7 @@ pub(crate) struct CheckArguments {
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
     /// Scene file, folder with a scene.toml, or name of a scene that ships with Koiter
+    #[arg(value_hint = ValueHint::AnyPath)]
     pub(crate) scene: String,
     /// Set a value of the scene by dotted path, such as time.dt=0.01 or shell.cloth.thickness=5e-4
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -124,6 +154,7 @@ Examples:
   koiter render results/sphere-drape -o strain.png --frame 40 --color strain --camera azimuth=60,elevation=20")]
 pub(crate) struct RenderArguments {
     /// Result folder
+    #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) result: PathBuf,
     /// Picture (.png) or film (.mp4, needs ffmpeg; .gif)
     #[arg(short, long, value_name = "FILE")]
@@ -146,6 +177,9 @@ pub(crate) struct RenderArguments {
     /// Draw the edges of the triangles
     #[arg(long)]
     pub(crate) wireframe: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -158,6 +192,7 @@ Examples:
   koiter export results/sphere-drape --to glb -o strain.glb --frame 40 --color strain")]
 pub(crate) struct ExportArguments {
     /// Result folder
+    #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) result: PathBuf,
     /// Format
     #[arg(long, value_enum)]
@@ -171,6 +206,9 @@ pub(crate) struct ExportArguments {
     /// Colour a frame of a glb by a field: strain, bending_energy_density or mean_curvature
     #[arg(long, value_name = "FIELD")]
     pub(crate) color: Option<String>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

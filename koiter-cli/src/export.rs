@@ -2,12 +2,15 @@
 
 mod glb;
 
-use crate::output::say;
+use std::path::Path;
+
 use koiter::io::result::ResultReader;
 use koiter::io::write::{MeshWithFields, write_obj, write_ply, write_vtu, write_vtu_series};
+use serde_json::json;
 
 use crate::arguments::{ExportArguments, ExportFormat};
 use crate::failure::Failure;
+use crate::output::say;
 
 /// Exports a frame, or all as a VTK series.
 pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
@@ -64,6 +67,23 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         }
         .map_err(Failure::run)?;
     }
-    say!("made: {}", output.display());
+    report(arguments, &reader, &output);
     Ok(())
+}
+
+fn report(arguments: &ExportArguments, reader: &ResultReader, output: &Path) {
+    if !arguments.json {
+        say!("made: {}", output.display());
+        return;
+    }
+    let can_hold_all = matches!(arguments.to, ExportFormat::Vtu | ExportFormat::Glb);
+    let is_all = can_hold_all && arguments.frame.is_none();
+    let manifest = reader.manifest();
+    let json = json!({
+        "made": output.display().to_string(),
+        "frames": if is_all { reader.len() } else { 1 },
+        "vertices": manifest.num_vertices(),
+        "faces": manifest.num_faces(),
+    });
+    say!("{json}");
 }

@@ -1,18 +1,22 @@
-//! The command line of Koiter: `koiter run`, `check`, `render`, `export`.
+//! The command line of Koiter: see [`arguments::Verb`] for what it does.
 //!
 //! Exit status: 0 done; 1 the run failed (it did not converge, or was interrupted); 2 the input is wrong. Errors go to
 //! standard error, results to standard output, progress to a terminal only.
 #![forbid(unsafe_code)]
 
 mod arguments;
+mod catalogue;
 mod check;
 mod debug_mesh;
 mod export;
 mod failure;
 mod logger;
+mod manual;
 mod memory;
+mod new;
 mod output;
 mod pictures;
+mod plot;
 mod probes;
 mod render;
 mod run;
@@ -32,6 +36,13 @@ fn main() -> ExitCode {
         Verb::Check(arguments) => check::check(&arguments),
         Verb::Render(arguments) => render::render(&arguments),
         Verb::Export(arguments) => export::export(&arguments),
+        Verb::Plot(arguments) => plot::plot(&arguments),
+        Verb::New(arguments) => new::new(&arguments),
+        Verb::Materials(arguments) => catalogue::materials(&arguments),
+        Verb::Models(arguments) => catalogue::models(&arguments),
+        Verb::Schema => catalogue::schema(),
+        Verb::Completions(arguments) => manual::completions(&arguments),
+        Verb::Man(arguments) => manual::man(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,11 +1,20 @@
 //! Lines for people and scripts, written so that a full disk or a reader that went away is no panic.
 
 use std::fmt::Arguments;
-use std::io::{ErrorKind, Write, stderr, stdout};
+use std::io::{self, ErrorKind, Write, stderr, stdout};
 
 /// Writes a line to standard output. A closed pipe ends the program quietly, anything else with status 1.
 pub(crate) fn line(text: Arguments<'_>) {
-    let Err(error) = writeln!(stdout(), "{text}") else {
+    check(writeln!(stdout(), "{text}"));
+}
+
+/// Writes a whole text to standard output, as [`line`] does.
+pub(crate) fn write_out(text: &[u8]) {
+    check(stdout().write_all(text).and_then(|()| stdout().flush()));
+}
+
+fn check(written: io::Result<()>) {
+    let Err(error) = written else {
         return;
     };
     if error.kind() == ErrorKind::BrokenPipe {

@@ -2,6 +2,7 @@
 
 use crate::output::say;
 use koiter::io::result::ResultReader;
+use serde_json::json;
 
 use crate::arguments::RenderArguments;
 use crate::failure::Failure;
@@ -40,6 +41,15 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     } else {
         album.film(&arguments.output, arguments.fps, true)?;
     }
-    say!("made: {}", arguments.output.display());
+    if arguments.json {
+        let (width, height) = arguments.size;
+        let made = arguments.output.display().to_string();
+        say!(
+            "{}",
+            json!({ "made": made, "width": width, "height": height, "frames": reader.len() })
+        );
+    } else {
+        say!("made: {}", arguments.output.display());
+    }
     Ok(())
 }

@@ -135,10 +135,21 @@ impl Pen<'_> {
     }
 }
 
+/// A digit or minus sign as an exponent.
+pub(crate) fn superscript_digit(c: char) -> char {
+    match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => char::from_u32('⁰' as u32 + digit.to_digit(10).unwrap_or(0)).unwrap_or(digit),
+    }
+}
+
 /// Round numbers between two values, and how to write them.
 #[derive(Debug, PartialEq)]
-struct Scale {
-    ticks: Vec<f64>,
+pub(crate) struct Scale {
+    pub(crate) ticks: Vec<f64>,
     /// Labels are in units of ten to this power, a multiple of three.
     exponent: i32,
     decimals: usize,
@@ -146,7 +157,7 @@ struct Scale {
 
 impl Scale {
     /// Steps of 1, 2 or 5 times a power of ten: the largest that gives four or more.
-    fn new(low: f64, high: f64) -> Self {
+    pub(crate) fn new(low: f64, high: f64) -> Self {
         let (low, high) = (low.min(high), low.max(high));
         let largest = low.abs().max(high.abs());
         let exponent = if largest == 0.0 || (1e-2..1e5).contains(&largest) {
@@ -185,7 +196,7 @@ impl Scale {
         }
     }
 
-    fn label(&self, tick: f64) -> String {
+    pub(crate) fn label(&self, tick: f64) -> String {
         let text = format!("{:.*}", self.decimals, tick / 10f64.powi(self.exponent));
         // A true minus sign, and no minus before zero.
         let is_zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
@@ -196,19 +207,16 @@ impl Scale {
         }
     }
 
-    fn title(&self, name: &str, unit: &str) -> String {
-        let digits = |c: char| match c {
-            '-' => '⁻',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            digit => char::from_u32('⁰' as u32 + digit.to_digit(10).unwrap_or(0)).unwrap_or(digit),
-        };
+    pub(crate) fn title(&self, name: &str, unit: &str) -> String {
         let factor = match self.exponent {
             0 => String::new(),
             exponent => format!(
                 "10{}",
-                exponent.to_string().chars().map(digits).collect::<String>()
+                exponent
+                    .to_string()
+                    .chars()
+                    .map(superscript_digit)
+                    .collect::<String>()
             ),
         };
         match (factor.is_empty(), unit.is_empty()) {

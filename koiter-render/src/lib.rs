@@ -1,4 +1,4 @@
-//! Pictures and films of thin-shell simulations, on the CPU, without a display.
+//! Pictures and films of thin-shell simulations, and charts of their figures, on the CPU, without a display.
 //!
 //! Triangles are rasterised with exact coverage; sky light and the soft shadow of one lamp are traced
 //! through a bounding volume hierarchy. The same input gives the same bytes whatever the number of threads.
@@ -37,6 +37,7 @@
 
 mod bvh;
 mod camera;
+mod chart;
 mod color;
 mod error;
 mod film;
@@ -55,6 +56,7 @@ mod surface;
 mod vector;
 
 pub use camera::{Camera, CameraParseError, CameraView};
+pub use chart::{Chart, Panel, Series, Style};
 pub use color::{ColorMap, ColorMapParseError, Rgb};
 pub use error::{FilmError, ImageError, RenderError};
 pub use film::Film;

@@ -19,11 +19,11 @@ pub struct MaterialPreset {
     pub thickness: f64,
     /// Ranges and choices.
     pub remark: &'static str,
-    /// Where the numbers come from.
+    /// Where the numbers come from: a key of docs/references.bib, and the place.
     pub source: &'static str,
 }
 
-const TABLE_6: &str = "\"Better Bending\" (2026), Table 6";
+const TABLE_6: &str = "better-bending-2026, Table 6";
 
 /// All presets.
 pub const ALL: [MaterialPreset; 5] = [

@@ -5,6 +5,7 @@
 //! message, a dotted path, a place in the text and a help.
 
 mod assemble;
+mod bending_models;
 mod clamps;
 mod display;
 mod fingerprint;
@@ -40,6 +41,7 @@ mod warnings;
 
 pub use self::{
     assemble::BuildError,
+    bending_models::BendingModelInfo,
     display::PartTopology,
     simulation::{Simulation, SystemStats},
     snapshot::{RestoreError, Snapshot},

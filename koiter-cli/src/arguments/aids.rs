@@ -1,0 +1,101 @@
+//! What helps around a run: new scenes, what there is, plots, completions, the manual.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum, ValueHint};
+use clap_complete::Shell;
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  koiter new flag                          flag/scene.toml: a cloth falls on a ball
+  koiter new bridge --template cantilever  a clamped strip, static
+  koiter new shirt --template mesh         a mesh from a file, with one to start from
+  koiter new tests/one.toml                a single file
+
+Nothing that is there is overwritten.")]
+pub(crate) struct NewArguments {
+    /// Folder to make, or file if it ends in .toml
+    #[arg(value_hint = ValueHint::AnyPath)]
+    pub(crate) name: PathBuf,
+    /// What to start from
+    #[arg(long, value_enum, default_value_t = Template::Drape)]
+    pub(crate) template: Template,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What to start from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Template {
+    /// A cloth falls on a ball; explains every common key
+    Drape,
+    /// A strip bends under its weight: statics, a clamp, reactions
+    Cantilever,
+    /// A mesh from a file falls over a pole
+    Mesh,
+}
+
+impl Template {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Drape => "drape",
+            Self::Cantilever => "cantilever",
+            Self::Mesh => "mesh",
+        }
+    }
+}
+
+/// Of `koiter materials` and `koiter models`.
+#[derive(Debug, Args)]
+pub(crate) struct CatalogueArguments {
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  koiter plot results/sphere-drape -o drape.svg
+  koiter plot results/sphere-drape -o drape.png --size 1600x1200
+
+Reads stats.jsonl, also of a run that still goes on or was stopped.")]
+pub(crate) struct PlotArguments {
+    /// Result folder
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub(crate) result: PathBuf,
+    /// Figure to write, .svg or .png [default: plot.svg in the result folder]
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1200x900", value_parser = super::parse_size)]
+    pub(crate) size: (u32, u32),
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  koiter completions bash > ~/.local/share/bash-completion/completions/koiter
+  koiter completions zsh > ~/.zfunc/_koiter
+  koiter completions fish > ~/.config/fish/completions/koiter.fish")]
+pub(crate) struct CompletionsArguments {
+    /// The shell
+    #[arg(value_enum)]
+    pub(crate) shell: Shell,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  koiter man | man -l -                    the page of the program
+  koiter man -o ~/.local/share/man/man1    a page for it and one for every command")]
+pub(crate) struct ManArguments {
+    /// Folder for the pages; made if it is not there [default: the main page to standard output]
+    #[arg(short, long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) output: Option<PathBuf>,
+}

@@ -1,0 +1,95 @@
+//! `koiter materials`, `koiter models`, `koiter schema`: what there is.
+
+use koiter::material::presets;
+use koiter::scene::json_schema;
+use koiter::scene::model::BendingModel;
+use serde_json::{Value, json};
+
+use crate::arguments::CatalogueArguments;
+use crate::failure::Failure;
+use crate::output::say;
+
+/// Lists the materials.
+pub(crate) fn materials(arguments: &CatalogueArguments) -> Result<(), Failure> {
+    if arguments.json {
+        let all = presets::ALL.map(|preset| {
+            json!({
+                "name": preset.name,
+                "young": preset.youngs_modulus,
+                "poisson": preset.poissons_ratio,
+                "density": preset.density,
+                "thickness": preset.thickness,
+                "remark": preset.remark,
+                "source": preset.source,
+            })
+        });
+        say!("{}", json!({ "materials": all, "default": Value::Null }));
+        return Ok(());
+    }
+    say!("material         young [Pa]  poisson  density [kg/m³]  thickness [m]  source");
+    for preset in presets::ALL {
+        say!(
+            "{:16} {:<10.2e}  {:<7}  {:<15}  {:<13.1e}  {}",
+            preset.name,
+            preset.youngs_modulus,
+            preset.poissons_ratio,
+            preset.density,
+            preset.thickness,
+            preset.source
+        );
+        if !preset.remark.is_empty() {
+            say!("{:16} {}", "", preset.remark);
+        }
+    }
+    say!(
+        "none is the default: each shell names its own, as material = \"cotton\"; numbers replace single values,"
+    );
+    say!("as material = {{ preset = \"cotton\", young = 2e6 }}. Sources: docs/references.bib");
+    Ok(())
+}
+
+/// Lists the bending models.
+pub(crate) fn models(arguments: &CatalogueArguments) -> Result<(), Failure> {
+    let default = BendingModel::default();
+    if arguments.json {
+        let all = BendingModel::ALL.map(|model| {
+            let info = model.info();
+            json!({
+                "name": info.name,
+                "what": info.what,
+                "directors": info.has_directors,
+                "source": (!info.source.is_empty()).then_some(info.source),
+            })
+        });
+        say!(
+            "{}",
+            json!({ "models": all, "default": default.info().name })
+        );
+        return Ok(());
+    }
+    say!("model     directors  what it is; source");
+    for model in BendingModel::ALL {
+        let info = model.info();
+        let directors = if info.has_directors { "yes" } else { "no" };
+        let remark = if model == default {
+            " (the default)"
+        } else {
+            ""
+        };
+        say!("{:9} {directors:9}  {}{remark}", info.name, info.what);
+        if !info.source.is_empty() {
+            say!("{:20} {}", "", info.source);
+        }
+    }
+    say!(
+        "a shell names its model, as bending = \"dcs\". Directors are one unknown angle an edge. Sources: docs/references.bib"
+    );
+    Ok(())
+}
+
+/// Prints the JSON Schema of scene files.
+pub(crate) fn schema() -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(&json_schema()).map_err(Failure::run)?;
+    say!("{text}");
+    Ok(())
+}

@@ -1,0 +1,109 @@
+//! Axes: values to pixels, ticks at round numbers.
+
+use crate::legend::Scale;
+
+/// An axis of a panel.
+pub(super) struct Axis {
+    low: f64,
+    high: f64,
+    is_log: bool,
+    /// Pixels of `low` and `high`.
+    pixels: (f64, f64),
+}
+
+impl Axis {
+    /// From `low` to `high`; a range of no width gets some.
+    pub(super) fn linear(low: f64, high: f64, pixels: (f64, f64)) -> Self {
+        let (low, high) = if low.is_finite()
+            && high.is_finite()
+            && high - low > 1e-12 * low.abs().max(high.abs())
+        {
+            (low, high)
+        } else {
+            let middle = if low.is_finite() { low } else { 0.0 };
+            let half = if middle == 0.0 {
+                1.0
+            } else {
+                0.5 * middle.abs()
+            };
+            (middle - half, middle + half)
+        };
+        Self {
+            low,
+            high,
+            is_log: false,
+            pixels,
+        }
+    }
+
+    /// Over whole decades.
+    pub(super) fn logarithmic(low: f64, high: f64, pixels: (f64, f64)) -> Self {
+        let (bottom, top) = (low.log10().floor(), high.log10().ceil());
+        let top = top.max(bottom + 1.0);
+        Self {
+            low: bottom,
+            high: top,
+            is_log: true,
+            pixels,
+        }
+    }
+
+    /// Pixel where the axis begins.
+    pub(super) fn start(&self) -> f64 {
+        self.pixels.0
+    }
+
+    /// Pixel of a value; `None` where it has no place.
+    pub(super) fn pixel(&self, value: f64) -> Option<f64> {
+        let at = if self.is_log { value.log10() } else { value };
+        let t = (at - self.low) / (self.high - self.low);
+        t.is_finite()
+            .then_some(self.pixels.0 + t * (self.pixels.1 - self.pixels.0))
+    }
+
+    /// Values to mark, with their labels.
+    pub(super) fn ticks(&self) -> Vec<(f64, String)> {
+        if !self.is_log {
+            let scale = Scale::new(self.low, self.high);
+            return scale
+                .ticks
+                .iter()
+                .map(|&tick| (tick, scale.label(tick)))
+                .collect();
+        }
+        // At most five decades get a label; within a single one, 2 and 5 do too.
+        let stride = (((self.high - self.low) / 5.0).ceil() as usize).max(1);
+        let mut ticks = Vec::new();
+        for decade in (self.low as i32..=self.high as i32).step_by(stride) {
+            let power = format!("10{}", superscript(decade));
+            if self.high - self.low < 1.5 && f64::from(decade) < self.high {
+                let inner = [2.0, 5.0].map(|k| (k * 10f64.powi(decade), format!("{k}·{power}")));
+                ticks.push((10f64.powi(decade), power));
+                ticks.extend(inner);
+            } else {
+                ticks.push((10f64.powi(decade), power));
+            }
+        }
+        ticks
+    }
+
+    /// The quantity with its unit, and the power of ten that is taken out of the labels.
+    pub(super) fn title(&self, name: &str, unit: &str) -> String {
+        if self.is_log {
+            return if unit.is_empty() {
+                name.to_owned()
+            } else {
+                format!("{name} [{unit}]")
+            };
+        }
+        Scale::new(self.low, self.high).title(name, unit)
+    }
+}
+
+fn superscript(number: i32) -> String {
+    let digits = number.to_string();
+    digits
+        .chars()
+        .map(crate::legend::superscript_digit)
+        .collect()
+}

@@ -1,0 +1,88 @@
+//! What is to be said of each bending model.
+
+use super::model::BendingModel;
+
+/// A bending model in words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BendingModelInfo {
+    /// Name in scene files.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub what: &'static str,
+    /// Whether it has an unknown angle on every edge beside the positions.
+    pub has_directors: bool,
+    /// A key of docs/references.bib, and the equation; empty for the absence of a model.
+    pub source: &'static str,
+}
+
+impl BendingModel {
+    /// All models.
+    pub const ALL: [Self; 5] = [Self::Bac, Self::Dcs, Self::Dso, Self::DsTheta, Self::None];
+
+    /// What is to be said of the model.
+    pub fn info(self) -> BendingModelInfo {
+        match self {
+            Self::Bac => BendingModelInfo {
+                name: "bac",
+                what: "Bending-Active Cosserat: directors on edges, tangent profile; converges, and folds never close",
+                has_directors: true,
+                source: "better-bending-2026, Eq. 48",
+            },
+            Self::Dcs => BendingModelInfo {
+                name: "dcs",
+                what: "Discrete Cosserat shell: directors on edges, sine profile; converges, sharp folds lose their stiffness",
+                has_directors: true,
+                source: "better-bending-2026, Eq. 30",
+            },
+            Self::Dso => BendingModelInfo {
+                name: "dso",
+                what: "Discrete shape operator: directors on edges, profile the angle itself; converges",
+                has_directors: true,
+                source: "better-bending-2026, Eq. 31",
+            },
+            Self::DsTheta => BendingModelInfo {
+                name: "ds-theta",
+                what: "Discrete Shells hinge, quadratic in the angle: cheap, the familiar baseline; does not converge",
+                has_directors: false,
+                source: "better-bending-2026, Eq. 7, after grinspun-2003",
+            },
+            Self::None => BendingModelInfo {
+                name: "none",
+                what: "no bending energy: a pure membrane",
+                has_directors: false,
+                source: "",
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn names_are_those_of_scene_files_and_sources_are_in_the_bibliography() {
+        let bibliography = include_str!("../../../docs/references.bib");
+        for model in BendingModel::ALL {
+            let info = model.info();
+            assert_eq!(serde_json::to_value(model).unwrap(), info.name);
+            for key in info
+                .source
+                .split(", ")
+                .filter(|part| part.ends_with(char::is_numeric))
+            {
+                let key = key.trim_start_matches("after ");
+                let is_equation = key.starts_with("Eq.");
+                assert!(
+                    is_equation || bibliography.contains(&format!("{{{key},")),
+                    "{key}"
+                );
+            }
+        }
+        for preset in crate::material::presets::ALL {
+            let (key, _) = preset.source.split_once(", ").unwrap();
+            assert!(bibliography.contains(&format!("{{{key},")), "{key}");
+        }
+    }
+}
