@@ -136,7 +136,7 @@ impl Pattern {
                 }
             }
             pattern.first_column_length.push(rows.len() as u32);
-            for column in 0..pattern.node_size(node) {
+            for column in 0..pattern.size(NodeId(node)) {
                 pattern.row_index.extend_from_slice(&rows[column..]);
                 let end = u32::try_from(pattern.row_index.len())
                     .expect("the matrix has fewer than 2^32 entries");
@@ -147,8 +147,15 @@ impl Pattern {
         pattern
     }
 
-    fn node_size(&self, node: u32) -> usize {
-        (self.node_start[node as usize + 1] - self.node_start[node as usize]) as usize
+    /// Number of unknowns of a node.
+    pub fn size(&self, node: NodeId) -> usize {
+        let n = node.0 as usize;
+        (self.node_start[n + 1] - self.node_start[n]) as usize
+    }
+
+    /// Entries of the first column of a node.
+    pub fn first_column_length(&self, node: NodeId) -> u32 {
+        self.first_column_length[node.0 as usize]
     }
 
     /// Number of rows.

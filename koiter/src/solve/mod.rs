@@ -2,11 +2,15 @@
 
 mod cholesky;
 mod line_search;
+mod multifrontal;
 mod newton;
 mod ordering;
+mod supernodal;
 mod workspace;
 
-pub use cholesky::{Factorization, NotPositiveDefinite, SparseCholesky};
+pub use cholesky::{LinearSolver, NotPositiveDefinite, SparseCholesky};
+pub use multifrontal::Multifrontal;
 pub use newton::{HessianChoice, NewtonOptions, NewtonReport, Problem, SolveError, minimize};
-pub use ordering::{NodeOrdering, nested_dissection};
+pub use ordering::{EliminationOrder, NodeOrdering, nested_dissection};
+pub use supernodal::Supernodal;
 pub use workspace::{LinearWorkspace, WorkspaceHistory};

@@ -7,7 +7,6 @@
 
 use std::time::Instant;
 
-use super::cholesky::SparseCholesky;
 use super::line_search::{SearchLine, line_search};
 use super::workspace::LinearWorkspace;
 use crate::assembly::{ConfigurationSpace, DofLayout, Energy, HessianBuilder, PsdProjection};

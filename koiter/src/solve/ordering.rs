@@ -80,6 +80,25 @@ pub fn nested_dissection(pattern: &Pattern) -> NodeOrdering {
     NodeOrdering(order.unwrap_or_else(|| (0..n as u32).collect()))
 }
 
+/// An order of elimination with its tree, in which subtrees are contiguous.
+#[derive(Clone, Debug)]
+pub struct EliminationOrder {
+    /// Node at each position.
+    pub nodes: Vec<u32>,
+    /// Parent position of each position in the elimination tree; `u32::MAX`: a root.
+    pub parent: Vec<u32>,
+    later_start: Vec<u32>,
+    later: Vec<u32>,
+}
+
+impl EliminationOrder {
+    /// Positions after `position` whose nodes are coupled to its node, in no order.
+    pub fn later_neighbors(&self, position: usize) -> &[u32] {
+        let range = self.later_start[position] as usize..self.later_start[position + 1] as usize;
+        &self.later[range]
+    }
+}
+
 impl NodeOrdering {
     /// Eliminates nodes in the order they are listed, each once.
     pub(super) fn of(nodes: Vec<u32>) -> Self {
@@ -91,23 +110,45 @@ impl NodeOrdering {
         &self.0
     }
 
-    /// The order of scalar unknowns, position → unknown, after a postorder of the elimination tree of `pattern` (which
-    /// may couple more nodes than the pattern the order was made for).
-    pub fn scalar_order(&self, pattern: &Pattern) -> Vec<u32> {
+    /// The order after a postorder of the elimination tree of `pattern` (which may couple more nodes than the pattern the
+    /// order was made for).
+    pub fn elimination_order(&self, pattern: &Pattern) -> EliminationOrder {
         let graph = Adjacency::new(pattern);
-        let n = self.0.len();
-        let mut position = vec![0u32; n];
-        for (k, &node) in self.0.iter().enumerate() {
-            position[node as usize] = k as u32;
-        }
+        let position = inverse(&self.0);
         let parent = self.elimination_tree(&graph, &position);
-        let starts = pattern.node_starts();
-        postorder(&parent)
-            .into_iter()
-            .flat_map(|k| {
-                let node = self.0[k as usize] as usize;
-                starts[node]..starts[node + 1]
+        let order = postorder(&parent);
+        let place = inverse(&order);
+        let nodes: Vec<u32> = order.iter().map(|&k| self.0[k as usize]).collect();
+        let position = inverse(&nodes);
+        let mut later_start = vec![0];
+        let mut later = Vec::with_capacity(graph.neighbors.len() / 2);
+        for (k, &node) in nodes.iter().enumerate() {
+            let neighbors = graph
+                .of(node as usize)
+                .iter()
+                .map(|&n| position[n as usize]);
+            later.extend(neighbors.filter(|&p| p as usize > k));
+            later_start.push(later.len() as u32);
+        }
+        let parent = (order.iter())
+            .map(|&k| match parent[k as usize] {
+                u32::MAX => u32::MAX,
+                p => place[p as usize],
             })
+            .collect();
+        EliminationOrder {
+            nodes,
+            parent,
+            later_start,
+            later,
+        }
+    }
+
+    /// The order of scalar unknowns, position → unknown, after the same postorder.
+    pub fn scalar_order(&self, pattern: &Pattern) -> Vec<u32> {
+        let starts = pattern.node_starts();
+        (self.elimination_order(pattern).nodes.into_iter())
+            .flat_map(|node| starts[node as usize]..starts[node as usize + 1])
             .collect()
     }
 
@@ -131,6 +172,14 @@ impl NodeOrdering {
         }
         parent
     }
+}
+
+fn inverse(order: &[u32]) -> Vec<u32> {
+    let mut position = vec![0; order.len()];
+    for (k, &item) in order.iter().enumerate() {
+        position[item as usize] = k as u32;
+    }
+    position
 }
 
 /// Children before parents, subtrees contiguous.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::cholesky::{Factorization, SparseCholesky};
+use super::cholesky::{LinearSolver, SparseCholesky};
 use super::ordering::{NodeOrdering, nested_dissection};
 use crate::assembly::{
     CoupledPairs, DofLayout, Energy, NodeId, Pattern, PatternBuilder, SymmetricMatrix,
@@ -21,14 +21,13 @@ pub struct WorkspaceHistory {
 }
 
 /// Pattern, matrix and factor, kept between steps.
-#[derive(Default)]
 pub struct LinearWorkspace {
     static_pairs: Option<CoupledPairs>,
     changing_pairs: CoupledPairs,
     ordering: Option<NodeOrdering>,
     entries_at_ordering: usize,
     pub(super) matrix: Option<SymmetricMatrix>,
-    pub(super) factor: Factorization,
+    pub(super) factor: Box<dyn SparseCholesky>,
 }
 
 /// Shifts to try, relative to the diagonal, when a factorisation fails.
@@ -37,7 +36,25 @@ const SHIFTS: [f64; 6] = [1e-8, 1e-6, 1e-4, 1e-2, 1.0, 1e2];
 /// Contacts make the factor fuller than the order was made for; beyond this ratio a new order pays.
 const REORDER_GROWTH: f64 = 1.5;
 
+impl Default for LinearWorkspace {
+    fn default() -> Self {
+        Self::new(LinearSolver::default())
+    }
+}
+
 impl LinearWorkspace {
+    /// An empty workspace that will use the given factorisation.
+    pub fn new(solver: LinearSolver) -> Self {
+        Self {
+            static_pairs: None,
+            changing_pairs: CoupledPairs::default(),
+            ordering: None,
+            entries_at_ordering: 0,
+            matrix: None,
+            factor: solver.create(),
+        }
+    }
+
     /// Stored entries of the lower triangle.
     pub fn entries(&self) -> usize {
         self.matrix.as_ref().map_or(0, |m| m.values.len())

@@ -1,0 +1,112 @@
+//! Figures in rows, for people and for scripts.
+
+use std::fmt;
+
+use serde_json::{Map, Value, json};
+
+/// A table of figures. Each column has a key (for scripts) and a heading with its unit (for people).
+pub(super) struct Table {
+    title: &'static str,
+    columns: &'static [(&'static str, &'static str)],
+    rows: Vec<Vec<Cell>>,
+}
+
+/// An entry of a table.
+#[derive(Clone)]
+pub(super) enum Cell {
+    Text(String),
+    Count(usize),
+    Figure(f64),
+    Missing,
+}
+
+impl From<usize> for Cell {
+    fn from(count: usize) -> Self {
+        Self::Count(count)
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(figure: f64) -> Self {
+        Self::Figure(figure)
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Self::Text(text.into())
+    }
+}
+
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Text(text) => f.pad(text),
+            Self::Count(count) => f.pad(&count.to_string()),
+            // Three digits: timings have no more.
+            Self::Figure(figure) if figure.abs() >= 100.0 => f.pad(&format!("{figure:.0}")),
+            Self::Figure(figure) if figure.abs() >= 10.0 => f.pad(&format!("{figure:.1}")),
+            Self::Figure(figure) if figure.abs() >= 1.0 => f.pad(&format!("{figure:.2}")),
+            Self::Figure(figure) => f.pad(&format!("{figure:.3}")),
+            Self::Missing => f.pad("-"),
+        }
+    }
+}
+
+impl Table {
+    pub(super) fn new(
+        title: &'static str,
+        columns: &'static [(&'static str, &'static str)],
+    ) -> Self {
+        Self {
+            title,
+            columns,
+            rows: Vec::new(),
+        }
+    }
+
+    /// Adds a row, in the order of the columns.
+    pub(super) fn push(&mut self, row: impl IntoIterator<Item = Cell>) {
+        self.rows.push(row.into_iter().collect());
+    }
+
+    /// `{"bench": title, "rows": [{key: value, …}, …]}`.
+    pub(super) fn json(&self) -> Value {
+        let value = |cell: &Cell| match cell {
+            Cell::Text(text) => json!(text),
+            Cell::Count(count) => json!(count),
+            Cell::Figure(figure) => json!(figure),
+            Cell::Missing => Value::Null,
+        };
+        let rows: Vec<Map<String, Value>> = (self.rows.iter())
+            .map(|row| {
+                let cells = self.columns.iter().zip(row);
+                cells
+                    .map(|((key, _), cell)| ((*key).to_owned(), value(cell)))
+                    .collect()
+            })
+            .collect();
+        json!({ "bench": self.title, "rows": rows })
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.title)?;
+        let width = |k: usize| {
+            let cells = self.rows.iter().map(|row| row[k].to_string().chars().count());
+            cells.fold(self.columns[k].1.chars().count(), usize::max)
+        };
+        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
+        for ((_, heading), width) in self.columns.iter().zip(&widths) {
+            write!(f, "  {heading:>width$}")?;
+        }
+        for row in &self.rows {
+            writeln!(f)?;
+            for (cell, width) in row.iter().zip(&widths) {
+                write!(f, "  {cell:>width$}")?;
+            }
+        }
+        Ok(())
+    }
+}
