@@ -62,6 +62,8 @@ and others) complete its keys and mark mistakes.")]
     Completions(CompletionsArguments),
     /// Prints or writes manual pages.
     Man(ManArguments),
+    /// Measures what things cost on this machine.
+    Bench(BenchArguments),
 }
 
 #[derive(Debug, Args)]
@@ -236,6 +238,70 @@ fn parse_ply(text: &str) -> Result<PathBuf, String> {
     is_ply
         .then_some(path)
         .ok_or_else(|| "the format is PLY: the name must end in .ply".to_owned())
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Every figure is the fastest of some repetitions. Rows are for one thread and for all cores.
+
+Examples:
+  koiter bench assembly
+  koiter bench solve --faces 40000 --repeats 5
+  koiter bench contact --json
+  koiter bench drape --n 35,70 --bending bac --threads 1")]
+pub(crate) struct BenchArguments {
+    #[command(subcommand)]
+    pub(crate) subject: BenchSubject,
+    /// Print one JSON object
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum BenchSubject {
+    /// Energies, gradients and Hessians into the assembled matrix
+    Assembly(SizeArguments),
+    /// Sparse Cholesky factorisation and solve, beside those of the crate faer
+    Solve(SizeArguments),
+    /// Broad phase, collision detection and barrier of a folded stack
+    Contact(SizeArguments),
+    /// Whole steps of the scene drape-n
+    Drape(DrapeArguments),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SizeArguments {
+    /// Numbers of triangles, about
+    #[arg(long, value_delimiter = ',', default_value = "10000,40000,160000", value_parser = parse_faces)]
+    pub(crate) faces: Vec<usize>,
+    /// Repetitions; the fastest counts
+    #[arg(long, default_value_t = 3)]
+    pub(crate) repeats: usize,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DrapeArguments {
+    /// Cells along an edge of the cloth
+    #[arg(long, value_delimiter = ',', default_value = "35,70,141")]
+    pub(crate) n: Vec<usize>,
+    /// Bending models
+    #[arg(long, value_delimiter = ',', default_value = "ds-theta,bac")]
+    pub(crate) bending: Vec<String>,
+    /// Steps of 20 ms
+    #[arg(long, default_value_t = 40)]
+    pub(crate) steps: usize,
+    /// Numbers of threads [default: one, and all cores]
+    #[arg(long, value_delimiter = ',')]
+    pub(crate) threads: Vec<usize>,
+}
+
+/// Largest meshes of benchmarks: 4 GB of matrix.
+const LARGEST_BENCH: usize = 2_000_000;
+
+fn parse_faces(text: &str) -> Result<usize, String> {
+    (text.parse().ok())
+        .filter(|faces| (2..=LARGEST_BENCH).contains(faces))
+        .ok_or_else(|| format!("write a number of triangles from 2 to {LARGEST_BENCH}"))
 }
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {

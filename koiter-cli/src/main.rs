@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod arguments;
+mod bench;
 mod catalogue;
 mod check;
 mod debug_mesh;
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         Verb::Schema => catalogue::schema(),
         Verb::Completions(arguments) => manual::completions(&arguments),
         Verb::Man(arguments) => manual::man(&arguments),
+        Verb::Bench(arguments) => bench::bench(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,7 +1,7 @@
 //! Membrane and BAC bending: energy, gradient and projected Hessian into the assembled matrix.
 
 use super::sheet::Sheet;
-use super::table::{Cell, Table};
+use super::table::Table;
 use super::{fastest, on_threads, thread_counts};
 use crate::arguments::SizeArguments;
 use crate::failure::Failure;
@@ -43,7 +43,7 @@ pub(super) fn bench(options: &SizeArguments) -> Result<Table, Failure> {
             })?;
             let per_face = |seconds: f64| seconds * 1e6 / sheet.num_faces as f64;
             let single = *single.get_or_insert(full);
-            table.push::<[Cell; 7]>([
+            table.push([
                 sheet.num_faces.into(),
                 threads.into(),
                 full.into(),

@@ -80,7 +80,7 @@ impl Run {
             ],
         })?
         .scene;
-        let dt = scene.schedule.dt;
+        let dt = scene.dt;
         let mut simulation = Simulation::new(scene.model).map_err(Failure::input)?;
         let mut run = Self {
             faces: simulation.stats().faces,
@@ -102,7 +102,9 @@ impl Run {
             }
         }
         run.seconds = start.elapsed().as_secs_f64();
-        let heights: Vec<f64> = (simulation.shell_positions(0).iter()).map(|x| x.z).collect();
+        let heights: Vec<f64> = (simulation.shell_positions(0).iter())
+            .map(|x| x.z)
+            .collect();
         run.mean_height = heights.iter().sum::<f64>() / heights.len() as f64;
         run.lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
         Ok(run)
@@ -121,7 +123,11 @@ impl Run {
         ];
         let spent = |part: &&str| self.parts.get(part).copied().unwrap_or(0.0);
         row.extend(PARTS.iter().map(|part| Cell::Figure(spent(part))));
-        row.extend([self.mean_height.into(), self.lowest.into(), self.unconverged.into()]);
+        row.extend([
+            self.mean_height.into(),
+            self.lowest.into(),
+            self.unconverged.into(),
+        ]);
         row
     }
 }

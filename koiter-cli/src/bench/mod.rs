@@ -45,7 +45,9 @@ fn fastest(repeats: usize, mut run: impl FnMut()) -> f64 {
 /// Runs on a pool of so many threads.
 fn on_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> Result<T, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    Ok(pool.map_err(|error| Failure::run(format!("cannot start {threads} threads: {error}")))?.install(run))
+    Ok(pool
+        .map_err(|error| Failure::run(format!("cannot start {threads} threads: {error}")))?
+        .install(run))
 }
 
 /// 1 and, where there are more, all cores.

@@ -3,7 +3,7 @@
 use koiter::solve::{LinearSolver, nested_dissection};
 
 use super::sheet::Sheet;
-use super::table::{Cell, Table};
+use super::table::Table;
 use super::{fastest, on_threads, thread_counts};
 use crate::arguments::SizeArguments;
 use crate::failure::Failure;
@@ -43,8 +43,7 @@ pub(super) fn bench(options: &SizeArguments) -> Result<Table, Failure> {
                     let mut factor = solver.create();
                     let analysis = fastest(1, || factor.analyze(&matrix.pattern, &ordering));
                     let mut result = Ok(());
-                    let numeric =
-                        fastest(options.repeats, || result = factor.factorize(matrix));
+                    let numeric = fastest(options.repeats, || result = factor.factorize(matrix));
                     let mut x = rhs.clone();
                     let solve = fastest(options.repeats, || {
                         x.copy_from_slice(&rhs);
@@ -58,7 +57,7 @@ pub(super) fn bench(options: &SizeArguments) -> Result<Table, Failure> {
                 let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|a| a * a).sum::<f64>().sqrt();
                 let residual = norm(&mut back.iter().zip(&rhs).map(|(a, b)| a - b))
                     / norm(&mut rhs.iter().copied());
-                table.push::<[Cell; 10]>([
+                table.push([
                     num_faces.into(),
                     unknowns.into(),
                     name.into(),

@@ -12,12 +12,10 @@ pub(super) struct Table {
 }
 
 /// An entry of a table.
-#[derive(Clone)]
 pub(super) enum Cell {
     Text(String),
     Count(usize),
     Figure(f64),
-    Missing,
 }
 
 impl From<usize> for Cell {
@@ -48,7 +46,6 @@ impl fmt::Display for Cell {
             Self::Figure(figure) if figure.abs() >= 10.0 => f.pad(&format!("{figure:.1}")),
             Self::Figure(figure) if figure.abs() >= 1.0 => f.pad(&format!("{figure:.2}")),
             Self::Figure(figure) => f.pad(&format!("{figure:.3}")),
-            Self::Missing => f.pad("-"),
         }
     }
 }
@@ -76,7 +73,6 @@ impl Table {
             Cell::Text(text) => json!(text),
             Cell::Count(count) => json!(count),
             Cell::Figure(figure) => json!(figure),
-            Cell::Missing => Value::Null,
         };
         let rows: Vec<Map<String, Value>> = (self.rows.iter())
             .map(|row| {
@@ -94,7 +90,10 @@ impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
         let width = |k: usize| {
-            let cells = self.rows.iter().map(|row| row[k].to_string().chars().count());
+            let cells = self
+                .rows
+                .iter()
+                .map(|row| row[k].to_string().chars().count());
             cells.fold(self.columns[k].1.chars().count(), usize::max)
         };
         let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();

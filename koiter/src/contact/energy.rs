@@ -116,7 +116,8 @@ impl Contact {
         self.candidates = Candidates::default();
     }
 
-    pub(super) fn positions(&self, q: &[f64]) -> Vec<Vec3> {
+    /// Positions of the vertices of the collision mesh in `q`.
+    pub fn positions(&self, q: &[f64]) -> Vec<Vec3> {
         (0..self.mesh.vertices.len() as u32)
             .map(|v| self.mesh.position(v, q))
             .collect()
@@ -233,6 +234,23 @@ impl Contact {
             min_gap: self.smallest_gap,
             kappa: self.kappa,
         }
+    }
+
+    /// Finds the candidate pairs of the whole way from `q` along `direction`; returns their number, or `None` if there
+    /// are too many.
+    pub fn find_candidates(&mut self, q: &[f64], direction: &[f64]) -> Option<usize> {
+        let (x, dx) = (self.positions(q), self.positions(direction));
+        (self.candidates.find(&self.mesh, self.d_hat, &x, Some(&dx)))
+            .then_some(self.candidates.pairs.len())
+    }
+
+    /// How far each candidate pair may go from the positions `x` along `dx`, by vertices of the collision mesh.
+    pub fn approaches(&self, x: &[Vec3], dx: &[Vec3]) -> Vec<Approach> {
+        parallel_map(self.candidates.pairs.len(), |i| {
+            let pair = &self.candidates.pairs[i];
+            let at = |of: &[Vec3]| pair.vertices.map(|v| of[v as usize]);
+            additive_ccd(pair, &at(x), &at(dx), self.touching_distance(pair))
+        })
     }
 
     /// Collects the active pairs at `q` among the candidates.
@@ -479,11 +497,7 @@ impl Energy for Contact {
             dx.iter_mut().for_each(|d| *d *= 0.5);
             self.limiter = Some(Limiter::Reach);
         }
-        let approaches = parallel_map(self.candidates.pairs.len(), |i| {
-            let pair = &self.candidates.pairs[i];
-            let at = |of: &[Vec3]| pair.vertices.map(|v| of[v as usize]);
-            additive_ccd(pair, &at(&x), &at(&dx), self.touching_distance(pair))
-        });
+        let approaches = self.approaches(&x, &dx);
         let mut bound = 1.0;
         for (pair, approach) in self.candidates.pairs.iter().zip(&approaches) {
             if approach.fraction < bound {
