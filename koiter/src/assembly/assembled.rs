@@ -105,7 +105,7 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
         let local = self.gather(stencil, q);
         match projection {
             PsdProjection::Exact => self.local.hessian(stencil, &local),
-            PsdProjection::Clamp => self.local.projected_hessian(stencil, &local),
+            partial => (self.local).projected_hessian(stencil, &local, partial.kept()),
         }
     }
 

@@ -5,13 +5,26 @@ use nalgebra::{SMatrix, SVector};
 use super::{Dof, HessianBuilder, Pattern, PatternBuilder, project_to_psd};
 
 /// What to do with negative curvature of an energy.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PsdProjection {
     /// The exact Hessian.
     Exact,
+    /// Keeps this share, between 0 and 1, of the negative curvature of every element.
+    Partial(f64),
     /// A positive semidefinite approximation, element by element.
     #[default]
     Clamp,
+}
+
+impl PsdProjection {
+    /// The share of negative curvature that is kept.
+    pub fn kept(self) -> f64 {
+        match self {
+            Self::Exact => 1.0,
+            Self::Partial(kept) => kept,
+            Self::Clamp => 0.0,
+        }
+    }
 }
 
 /// Value, gradient and Hessian of one element.
@@ -55,11 +68,12 @@ pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
     fn gradient(&self, stencil: usize, q: &SVector<f64, N>) -> (f64, SVector<f64, N>);
     /// φ_s with gradient and the true Hessian.
     fn hessian(&self, stencil: usize, q: &SVector<f64, N>) -> LocalHessian<N>;
-    /// φ_s with gradient and a positive semidefinite approximation of the Hessian. Energies that know the small space in
-    /// which their Hessian is indefinite override this; the default decomposes the whole matrix.
-    fn projected_hessian(&self, stencil: usize, q: &SVector<f64, N>) -> LocalHessian<N> {
+    /// φ_s with gradient and a Hessian of whose negative curvature only the share `kept` is left; positive semidefinite
+    /// for 0. Energies that know the small space in which their Hessian is indefinite override this; the default
+    /// decomposes the whole matrix.
+    fn projected_hessian(&self, stencil: usize, q: &SVector<f64, N>, kept: f64) -> LocalHessian<N> {
         let mut local = self.hessian(stencil, q);
-        project_to_psd(&mut local.hessian);
+        project_to_psd(&mut local.hessian, kept);
         local
     }
     /// Whether φ_s is defined at `q`.

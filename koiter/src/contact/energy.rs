@@ -451,11 +451,7 @@ impl Energy for Contact {
         for near in &self.active_planes {
             let [first, second] = self.plane_derivatives(near);
             self.add_plane_gradient(near, first, gradient);
-            let stiffness = if projection == PsdProjection::Clamp {
-                second.max(0.0)
-            } else {
-                second
-            };
+            let stiffness = second.max(projection.kept() * second);
             let plane = &self.planes[near.plane];
             let block = plane.normal * plane.normal.transpose() * stiffness;
             let (v, p) = (

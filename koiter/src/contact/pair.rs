@@ -91,7 +91,7 @@ pub(super) fn derivatives(
     let [value, first, second] = barrier.derivatives(closest.distance_squared);
     let outer = |a: &[f64; 4], v: &Vec3| SVector::<f64, 12>::from_fn(|i, _| a[i / 3] * v[i % 3]);
     let distance_gradient = outer(&closest.weights, &closest.separation) * 2.0;
-    let clamp = projection == PsdProjection::Clamp;
+    let kept = projection.kept();
     let [m, m1, m2] = if threshold > 0.0 {
         mollifier(squared_sine(x), threshold)
     } else {
@@ -100,39 +100,38 @@ pub(super) fn derivatives(
     if m1 == 0.0 {
         return (
             distance_gradient * first,
-            barrier_hessian(closest, first, second, clamp),
+            barrier_hessian(closest, first, second, kept),
         );
     }
     // Rare, nearly parallel edges: the products of derivatives of m and b have no simple sign structure.
     let (sine_gradient, sine_hessian) = squared_sine_derivatives(x);
     let gradient = distance_gradient * (m * first) + sine_gradient * (m1 * value);
     let cross = distance_gradient * sine_gradient.transpose() * (m1 * first);
-    let mut hessian = barrier_hessian(closest, first, second, false) * m
+    let mut hessian = barrier_hessian(closest, first, second, 1.0) * m
         + cross
         + cross.transpose()
         + sine_gradient * sine_gradient.transpose() * (m2 * value)
         + sine_hessian * (m1 * value);
-    if clamp {
-        project_to_psd(&mut hessian);
+    if kept < 1.0 {
+        project_to_psd(&mut hessian, kept);
     }
     (gradient, hessian)
 }
 
-/// The formula in the head of this file.
+/// The formula in the head of this file, of whose negative part the share `kept` is left.
 fn barrier_hessian(
     closest: &ClosestPoints,
     first: f64,
     second: f64,
-    clamp: bool,
+    kept: f64,
 ) -> SMatrix<f64, 12, 12> {
     let distance = closest.distance_squared.sqrt();
     let direction = closest.separation / distance;
     let w = SVector::<f64, 4>::from(closest.weights);
     let mut normal = 4.0 * second * closest.distance_squared + 2.0 * first;
     let mut lateral = 2.0 * first;
-    if clamp {
-        normal = normal.max(0.0);
-        lateral = lateral.max(0.0);
+    for factor in [&mut normal, &mut lateral] {
+        *factor = factor.max(kept * *factor);
     }
     // Blocks on the weights: (w wᵀ) ⊗ B with one 3 × 3 matrix B.
     let mut block = direction * direction.transpose() * normal;
@@ -152,18 +151,20 @@ fn barrier_hessian(
         }
         // −2 b' [[0, 1], [1, 1]] on (w ⊗ t, v ⊗ r); on unit vectors [[0, ab], [ab, b²]].
         let k = -2.0 * first;
-        let (cross, square) = if clamp {
-            let root = (b * b + 4.0 * a * a).sqrt();
-            let largest = 0.5 * b * (b + root);
-            // Unit eigenvector (ab, largest) / norm of the 2 × 2 matrix.
-            let norm_squared = a * a * b * b + largest * largest;
-            let lead = k * largest / norm_squared;
-            let ww = lead * b * b;
-            hessian += kronecker(&(w * w.transpose() * ww), &(tangent * tangent.transpose()));
-            (lead * largest, lead * largest * largest / (b * b))
-        } else {
-            (k, k)
-        };
+        let root = (b * b + 4.0 * a * a).sqrt();
+        let largest = 0.5 * b * (b + root);
+        // Unit eigenvector (ab, largest) / norm of the 2 × 2 matrix.
+        let lead = k * largest / (a * a * b * b + largest * largest);
+        let blend = |exact: f64, positive: f64| positive + kept * (exact - positive);
+        let cross = blend(k, lead * largest);
+        let square = blend(k, lead * largest * largest / (b * b));
+        if kept < 1.0 {
+            let lateral = blend(0.0, lead * b * b);
+            hessian += kronecker(
+                &(w * w.transpose() * lateral),
+                &(tangent * tangent.transpose()),
+            );
+        }
         let mixed = kronecker(
             &(w * v.transpose() * (cross * distance)),
             &(tangent * direction.transpose()),
@@ -242,6 +243,9 @@ mod tests {
         }
         let (same, projected) = at(&x, PsdProjection::Clamp);
         assert_eq!(same, gradient);
+        let (_, partial) = at(&x, PsdProjection::Partial(0.3));
+        let blend = projected + (hessian - projected) * 0.3;
+        assert!((partial - blend).norm() < 1e-13 * hessian.norm());
         let eigenvalues = nalgebra::DMatrix::from_column_slice(12, 12, projected.as_slice())
             .symmetric_eigenvalues();
         assert!(eigenvalues.min() > -1e-12 * projected.norm());

@@ -83,10 +83,10 @@ impl<M: Material> Membrane<M> {
         gradient
     }
 
-    fn derivatives(&self, face: usize, q: &SVector<f64, 9>, project: bool) -> LocalHessian<9> {
+    fn derivatives(&self, face: usize, q: &SVector<f64, 9>, kept: f64) -> LocalHessian<9> {
         let columns = self.columns(face, q);
         let response = self.material.response(face, &green_strain(&columns));
-        let by_columns = hessian_by_columns(&columns, &response.stress, &response.tangent, project)
+        let by_columns = hessian_by_columns(&columns, &response.stress, &response.tangent, kept)
             * self.volume(face);
         let weights = self.frames[face].corner_weights();
         let mut hessian = SMatrix::<f64, 9, 9>::zeros();
@@ -126,13 +126,13 @@ fn hessian_by_columns(
     [f1, f2]: &[Vec3; 2],
     stress: &Vector3<f64>,
     tangent: &nalgebra::Matrix3<f64>,
-    project: bool,
+    kept: f64,
 ) -> Matrix6<f64> {
     let mut geometric = nalgebra::Matrix2::new(stress.x, 0.5 * stress.z, 0.5 * stress.z, stress.y);
     let zero = Vec3::zeros();
     let jacobian = [(*f1, zero), (zero, *f2), (f2 * 0.5, f1 * 0.5)]
         .map(|(a, b)| SVector::<f64, 6>::from_column_slice(&[a.x, a.y, a.z, b.x, b.y, b.z]));
-    if !project {
+    if kept == 1.0 {
         let mut h = geometric_part(&geometric, &nalgebra::Matrix3::identity());
         for (s, row) in jacobian.iter().enumerate() {
             for (t, column) in jacobian.iter().enumerate() {
@@ -164,8 +164,8 @@ fn hessian_by_columns(
             plane += row * column.transpose() * tangent[(s, t)];
         }
     }
-    project_to_psd(&mut plane);
-    project_to_psd(&mut geometric);
+    project_to_psd(&mut plane, kept);
+    project_to_psd(&mut geometric, kept);
     let mut h = geometric_part(&geometric, &(normal * normal.transpose()));
     for i in 0..4 {
         for j in 0..4 {
@@ -220,11 +220,11 @@ impl<M: Material> LocalEnergy<9, 3> for Membrane<M> {
     }
 
     fn hessian(&self, stencil: usize, q: &SVector<f64, 9>) -> LocalHessian<9> {
-        self.derivatives(stencil, q, false)
+        self.derivatives(stencil, q, 1.0)
     }
 
-    fn projected_hessian(&self, stencil: usize, q: &SVector<f64, 9>) -> LocalHessian<9> {
-        self.derivatives(stencil, q, true)
+    fn projected_hessian(&self, stencil: usize, q: &SVector<f64, 9>, kept: f64) -> LocalHessian<9> {
+        self.derivatives(stencil, q, kept)
     }
 
     fn describe(&self, stencil: usize) -> String {

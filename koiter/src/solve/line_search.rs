@@ -27,6 +27,14 @@ pub(super) struct SearchLine<'a> {
     pub(super) moving: bool,
 }
 
+/// How far a line search went.
+pub(super) struct Taken {
+    /// Newton steps: 0 if no fraction will do.
+    pub(super) steps: f64,
+    /// Whether the energy, not contact, kept it from going further.
+    pub(super) by_energy: bool,
+}
+
 /// Sum of the energies, and of their absolute values.
 fn total(energies: &[&mut dyn Energy], q: &[f64]) -> (f64, f64) {
     energies
@@ -35,13 +43,13 @@ fn total(energies: &[&mut dyn Energy], q: &[f64]) -> (f64, f64) {
         .fold((0.0, 0.0), |(sum, size), v| (sum + v, size + v.abs()))
 }
 
-/// Moves `q` along the line and returns the number of Newton steps taken: 0 if no fraction will do.
+/// Moves `q` along the line.
 pub(super) fn line_search(
     problem: &mut Problem<'_>,
     q: &mut [f64],
     line: &SearchLine<'_>,
     report: &mut NewtonReport,
-) -> f64 {
+) -> Taken {
     let start = Instant::now();
     report.limiter = None;
     let whole: Vec<f64> = line.direction.iter().map(|d| d * line.reach).collect();
@@ -55,9 +63,9 @@ pub(super) fn line_search(
     }
     report.spend("collision_detection", start);
     let start = Instant::now();
-    let steps = search(problem, q, line, bound * line.reach, report);
+    let taken = search(problem, q, line, bound * line.reach, report);
     report.spend("line_search", start);
-    steps
+    taken
 }
 
 fn search(
@@ -66,7 +74,7 @@ fn search(
     line: &SearchLine<'_>,
     longest: f64,
     report: &mut NewtonReport,
-) -> f64 {
+) -> Taken {
     let (before, magnitude) = total(&problem.energies, q);
     // Round-off of a sum of that magnitude: differences below it say nothing.
     let noise = 1e-14 * magnitude;
@@ -84,6 +92,7 @@ fn search(
         }
     };
     let mut steps = longest.min(1.0);
+    let mut by_energy = false;
     for _ in 0..MAX_HALVINGS {
         let trial = point(steps);
         match value_at(&trial) {
@@ -99,14 +108,21 @@ fn search(
                     }
                 }
                 q.copy_from_slice(&best.2);
-                return best.0;
+                return Taken {
+                    steps: best.0,
+                    by_energy,
+                };
             }
             Ok(_) => report.limiter = Some("the energy does not decrease further on".into()),
             Err(energy) => report.limiter = Some(format!("{energy} is not defined further on")),
         }
+        by_energy = true;
         steps *= 0.5;
     }
-    0.0
+    Taken {
+        steps: 0.0,
+        by_energy,
+    }
 }
 
 fn decreases(value: f64, before: f64, steps: f64, line: &SearchLine<'_>) -> bool {

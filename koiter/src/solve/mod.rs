@@ -5,6 +5,7 @@ mod line_search;
 mod multifrontal;
 mod newton;
 mod ordering;
+mod pace;
 mod supernodal;
 mod workspace;
 

@@ -8,6 +8,7 @@
 use std::time::Instant;
 
 use super::line_search::{SearchLine, line_search};
+use super::pace::Pace;
 use super::workspace::LinearWorkspace;
 use crate::assembly::{ConfigurationSpace, DofLayout, Energy, HessianBuilder, PsdProjection};
 
@@ -122,19 +123,11 @@ pub fn minimize(
         energy.prepare(q);
     }
     report.spend("contact", start);
-    let slow = options.hessian == HessianChoice::ExactWhereConvex;
-    let mut pace = Pace {
-        slow,
-        ..Pace::default()
-    };
+    let mut pace = Pace::new(options.hessian);
     while report.iterations < options.max_iterations {
         let step = newton_step(problem, workspace, q, &mut pace, &mut report)?;
         report.iterations += 1;
-        let before = report.last_step;
         report.last_step = problem.space.displacement(q, &step.direction);
-        if options.hessian == HessianChoice::Projected {
-            pace.observe(report.last_step / before);
-        }
         let moving = step.remaining > 0.0;
         let reach = if moving { 1.0 } else { pace.reach() };
         let line = SearchLine {
@@ -144,72 +137,17 @@ pub fn minimize(
             moving,
         };
         let taken = line_search(problem, q, &line, &mut report);
-        pace.steps = taken;
-        report.last_fraction = taken.min(1.0);
+        pace.observe(report.last_step, taken.steps, taken.by_energy);
+        report.last_fraction = taken.steps.min(1.0);
         report.remaining = step.remaining * (1.0 - report.last_fraction);
         // A step within the tolerance that the line search shortened was shortened by round-off or a contact's slack.
         let small = report.last_step < options.tolerance && step.remaining < options.tolerance;
-        if small && (!moving || taken >= 1.0) {
+        if small && (!moving || taken.steps >= 1.0) {
             report.converged = true;
             break;
         }
     }
     Ok(report)
-}
-
-/// What to do about slow progress.
-///
-/// Clamping keeps every matrix positive definite, but where the clamped curvature matters (a sheet that buckles) it makes
-/// the model too stiff, and steps shrink by a constant factor only. Then the exact Hessian is tried, which converges
-/// quadratically if it is positive definite; a failure costs a factorisation, so the wait after it doubles. Meanwhile the
-/// line search looks further than the Newton step. On the cloth of `examples/drape_n` (N = 35, 20 steps) this takes 438
-/// iterations instead of 660.
-#[derive(Debug, Default)]
-struct Pace {
-    slow: bool,
-    wait: usize,
-    next_wait: usize,
-    used_exact: bool,
-    /// Newton steps that the last line search took.
-    steps: f64,
-}
-
-/// Steps that shrink less than this between two iterations count as slow.
-const SLOW_RATIO: f64 = 0.3;
-
-/// The line search looks at most this many Newton steps ahead: further reaches cost collision detection more than they
-/// save (4 and 16 take the same iterations on the cloth above).
-const LONGEST_REACH: f64 = 4.0;
-
-/// After failures of the exact Hessian it is tried again after at most this many iterations.
-const LONGEST_WAIT: usize = 16;
-
-impl Pace {
-    fn observe(&mut self, ratio: f64) {
-        self.slow = ratio > SLOW_RATIO;
-    }
-
-    fn tries_exact(&self) -> bool {
-        self.slow && self.wait == 0
-    }
-
-    fn record_exact(&mut self, positive_definite: bool) {
-        self.used_exact = positive_definite;
-        self.next_wait = if positive_definite {
-            0
-        } else {
-            (2 * self.next_wait).clamp(1, LONGEST_WAIT)
-        };
-        self.wait = self.next_wait;
-    }
-
-    fn reach(&self) -> f64 {
-        if self.slow && !self.used_exact {
-            (2.0 * self.steps).clamp(2.0, LONGEST_REACH)
-        } else {
-            1.0
-        }
-    }
 }
 
 struct NewtonStep {
@@ -247,46 +185,40 @@ fn newton_step(
         .collect();
     let remaining = direction.iter().fold(0.0f64, |m, d| m.max(d.abs()));
     let mut gradient = vec![0.0; q.len()];
-    let mut rhs = assemble(
-        problem,
-        workspace,
-        q,
-        &direction,
-        pace.tries_exact(),
-        &mut gradient,
-        report,
-    )?;
-    if !pace.tries_exact() {
-        pace.used_exact = false;
-        pace.wait = pace.wait.saturating_sub(1);
-    } else {
+    let mut rhs;
+    loop {
+        gradient.fill(0.0);
+        let projection = pace.projection();
+        rhs = assemble(
+            problem,
+            workspace,
+            q,
+            &direction,
+            projection,
+            &mut gradient,
+            report,
+        )?;
         let start = Instant::now();
-        let matrix = workspace.matrix.as_ref().expect("the matrix was assembled");
-        let positive = workspace.factor.factorize(matrix).is_ok();
+        let factorized = if projection == PsdProjection::Clamp {
+            workspace.factorize_shifted().map(|n| report.shifts += n)
+        } else {
+            workspace.factorize()
+        };
         report.spend("linear_solve", start);
-        pace.record_exact(positive);
-        if !positive {
-            report.indefinite += 1;
-            gradient.fill(0.0);
-            rhs = assemble(
-                problem,
-                workspace,
-                q,
-                &direction,
-                false,
-                &mut gradient,
-                report,
-            )?;
+        match factorized {
+            Ok(()) => break,
+            Err(dof) if projection == PsdProjection::Clamp => {
+                return Err(SolveError::Indefinite {
+                    unknown: problem.space.describe(dof),
+                });
+            }
+            Err(_) => {
+                report.indefinite += 1;
+                pace.indefinite();
+            }
         }
     }
     let start = Instant::now();
-    if !pace.used_exact {
-        report.shifts += workspace
-            .factorize()
-            .map_err(|dof| SolveError::Indefinite {
-                unknown: problem.space.describe(dof),
-            })?;
-    }
     workspace.factor.solve(&mut rhs);
     direction[..solved].copy_from_slice(&rhs);
     report.spend("linear_solve", start);
@@ -304,16 +236,11 @@ fn assemble(
     workspace: &mut LinearWorkspace,
     q: &[f64],
     prescribed: &[f64],
-    exact: bool,
+    projection: PsdProjection,
     gradient: &mut [f64],
     report: &mut NewtonReport,
 ) -> Result<Vec<f64>, SolveError> {
     let solved = problem.layout.num_solved_dofs();
-    let projection = if exact {
-        PsdProjection::Exact
-    } else {
-        PsdProjection::Clamp
-    };
     let mut coupling = vec![0.0; solved];
     let matrix = workspace.matrix.as_mut().expect("the pattern was updated");
     matrix.values.fill(0.0);

@@ -160,12 +160,24 @@ impl LinearWorkspace {
         self.matrix = Some(SymmetricMatrix::zeros(pattern));
     }
 
+    /// Factorises the assembled matrix.
+    ///
+    /// # Errors
+    /// The unknown whose pivot is not positive.
+    pub(super) fn factorize(&mut self) -> Result<(), usize> {
+        let matrix = self.matrix.as_ref().expect("the matrix was assembled");
+        self.factor.factorize(matrix).map_err(|failure| failure.dof)
+    }
+
     /// Factorises the assembled matrix, with a diagonal shift if it must be; returns the number of shifts tried.
-    pub(super) fn factorize(&mut self) -> Result<usize, usize> {
-        let matrix = self.matrix.as_mut().expect("the matrix was assembled");
-        let Err(mut failure) = self.factor.factorize(matrix) else {
+    ///
+    /// # Errors
+    /// The unknown whose pivot is not positive after the largest shift.
+    pub(super) fn factorize_shifted(&mut self) -> Result<usize, usize> {
+        let Err(mut failure) = self.factorize() else {
             return Ok(0);
         };
+        let matrix = self.matrix.as_mut().expect("the matrix was assembled");
         let pattern = Arc::clone(&matrix.pattern);
         let mut applied = 0.0;
         for (attempt, shift) in SHIFTS.iter().enumerate() {
@@ -176,9 +188,9 @@ impl LinearWorkspace {
             applied = *shift;
             match self.factor.factorize(matrix) {
                 Ok(()) => return Ok(attempt + 1),
-                Err(error) => failure = error,
+                Err(error) => failure = error.dof,
             }
         }
-        Err(failure.dof)
+        Err(failure)
     }
 }

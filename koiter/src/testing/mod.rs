@@ -121,7 +121,17 @@ pub fn check<const N: usize, const K: usize, L: LocalEnergy<N, K>>(
                 }
             }
         }
-        let projected = energy.local().projected_hessian(stencil, &x).hessian;
+        let projected = energy.local().projected_hessian(stencil, &x, 0.0).hessian;
+        let partial = energy.local().projected_hessian(stencil, &x, 0.3).hessian;
+        let blend = projected + (exact.hessian - projected) * 0.3;
+        if !((partial - blend).amax() <= tolerance * hessian_scale) {
+            return fail(
+                "the share of negative curvature that is kept is the one asked for",
+                stencil,
+                partial.amax(),
+                blend.amax(),
+            );
+        }
         let lowest = nalgebra::DMatrix::from_column_slice(N, N, projected.as_slice())
             .symmetric_eigenvalues()
             .min();

@@ -97,11 +97,11 @@ impl DirectorClamp {
         (slope, own, other)
     }
 
-    fn derivatives(&self, stencil: usize, q: &SVector<f64, 7>, clamp: bool) -> LocalHessian<7> {
+    fn derivatives(&self, stencil: usize, q: &SVector<f64, 7>, kept: f64) -> LocalHessian<7> {
         let stiffness = self.edges[stencil].stiffness;
         let at = self.kinematics(stencil, q);
         let (slope, own, other) = self.slope(stencil, &at);
-        let mut form = QuadraticForm::zero(clamp);
+        let mut form = QuadraticForm::zero(kept);
         form.add_square(stiffness, &slope);
         let moment = stiffness * at.psi;
         let share = if other.is_some() { 1.0 } else { 2.0 };
@@ -179,11 +179,11 @@ impl LocalEnergy<7, 3> for DirectorClamp {
     }
 
     fn hessian(&self, stencil: usize, q: &SVector<f64, 7>) -> LocalHessian<7> {
-        self.derivatives(stencil, q, false)
+        self.derivatives(stencil, q, 1.0)
     }
 
-    fn projected_hessian(&self, stencil: usize, q: &SVector<f64, 7>) -> LocalHessian<7> {
-        self.derivatives(stencil, q, true)
+    fn projected_hessian(&self, stencil: usize, q: &SVector<f64, 7>, kept: f64) -> LocalHessian<7> {
+        self.derivatives(stencil, q, kept)
     }
 
     fn describe(&self, stencil: usize) -> String {

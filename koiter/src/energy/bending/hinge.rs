@@ -78,7 +78,7 @@ impl DiscreteShellsHinge {
         [Wing::new(&a, &b, &x(2)), Wing::new(&b, &a, &x(3))]
     }
 
-    fn derivatives(&self, stencil: usize, q: &SVector<f64, 12>, clamp: bool) -> LocalHessian<12> {
+    fn derivatives(&self, stencil: usize, q: &SVector<f64, 12>, kept: f64) -> LocalHessian<12> {
         let hinge = &self.hinges[stencil];
         let wings = Self::wings(q);
         let offset = hinge_angle(&wings[0], &wings[1]) - hinge.rest_angle;
@@ -88,7 +88,7 @@ impl DiscreteShellsHinge {
         ];
         let slope: Functional =
             std::array::from_fn(|i| -functionals[0].turning[i] - functionals[1].turning[i]);
-        let mut form = QuadraticForm::zero(clamp);
+        let mut form = QuadraticForm::zero(kept);
         form.add_square(2.0 * hinge.stiffness, &slope);
         for wing in &functionals {
             wing.add_angle(2.0 * hinge.stiffness * offset, &mut form);
@@ -162,11 +162,16 @@ impl LocalEnergy<12, 4> for DiscreteShellsHinge {
     }
 
     fn hessian(&self, stencil: usize, q: &SVector<f64, 12>) -> LocalHessian<12> {
-        self.derivatives(stencil, q, false)
+        self.derivatives(stencil, q, 1.0)
     }
 
-    fn projected_hessian(&self, stencil: usize, q: &SVector<f64, 12>) -> LocalHessian<12> {
-        self.derivatives(stencil, q, true)
+    fn projected_hessian(
+        &self,
+        stencil: usize,
+        q: &SVector<f64, 12>,
+        kept: f64,
+    ) -> LocalHessian<12> {
+        self.derivatives(stencil, q, kept)
     }
 
     fn describe(&self, stencil: usize) -> String {

@@ -251,14 +251,14 @@ impl<P: AngleProfile, M: Material> MidEdgeBending<P, M> {
         )
     }
 
-    fn derivatives(&self, stencil: usize, q: &SVector<f64, 21>, clamp: bool) -> LocalHessian<21> {
+    fn derivatives(&self, stencil: usize, q: &SVector<f64, 21>, kept: f64) -> LocalHessian<21> {
         let corners = self.corners(stencil, q);
         let (value, moments, tangent) = self.response(stencil, &corners);
         let mut hessian = SMatrix::<f64, 21, 21>::zeros();
         let mut jacobian = [[0.0; 21]; 3];
         for (c, corner) in corners.iter().enumerate() {
             let places = places(c);
-            let (slope, form) = corner_form(corner, moments[c], clamp);
+            let (slope, form) = corner_form(corner, moments[c], kept);
             let used = if corner.neighbor.is_some() {
                 0..ANGLE + 1
             } else {
@@ -352,7 +352,7 @@ fn places(c: usize) -> [usize; 13] {
 }
 
 /// ∂q_c and `moment` · ∂²q_c over the unknowns of the hinge.
-fn corner_form(corner: &Corner, moment: f64, clamp: bool) -> (Functional, QuadraticForm) {
+fn corner_form(corner: &Corner, moment: f64, kept: f64) -> (Functional, QuadraticForm) {
     let [g, g1, g2] = corner.profile;
     let twice_height = 2.0 * corner.wing.height;
     let own = WingFunctionals::new(&corner.wing, [0, 1, 2]);
@@ -363,7 +363,7 @@ fn corner_form(corner: &Corner, moment: f64, clamp: bool) -> (Functional, Quadra
     let tilt_change = corner.tilt_change(&own.turning, other.as_ref().map(|w| &w.turning));
     let slope =
         std::array::from_fn(|i| twice_height * (g * own.stretching[i] + g1 * tilt_change[i]));
-    let mut form = QuadraticForm::zero(clamp);
+    let mut form = QuadraticForm::zero(kept);
     let k = moment * twice_height;
     own.add_altitude(k * g, &mut form);
     form.add_square(k * g2, &tilt_change);
@@ -371,7 +371,7 @@ fn corner_form(corner: &Corner, moment: f64, clamp: bool) -> (Functional, Quadra
     partner[ANGLE] = 2.0 * corner.sign;
     if let Some(other) = &other {
         partner = scaled_sum(&partner, &other.turning, -1.0);
-        if clamp {
+        if kept < 1.0 {
             // In a fold the neighbour's normal leaves that of the face, so N' and T are not orthogonal, as the closed
             // positive part of a product needs: split off the square of T.
             let along = dot(&partner, &own.stretching) / dot(&own.stretching, &own.stretching);
@@ -442,11 +442,16 @@ impl<P: AngleProfile, M: Material> LocalEnergy<21, 9> for MidEdgeBending<P, M> {
     }
 
     fn hessian(&self, stencil: usize, q: &SVector<f64, 21>) -> LocalHessian<21> {
-        self.derivatives(stencil, q, false)
+        self.derivatives(stencil, q, 1.0)
     }
 
-    fn projected_hessian(&self, stencil: usize, q: &SVector<f64, 21>) -> LocalHessian<21> {
-        self.derivatives(stencil, q, true)
+    fn projected_hessian(
+        &self,
+        stencil: usize,
+        q: &SVector<f64, 21>,
+        kept: f64,
+    ) -> LocalHessian<21> {
+        self.derivatives(stencil, q, kept)
     }
 
     fn is_admissible(&self, stencil: usize, q: &SVector<f64, 21>) -> bool {

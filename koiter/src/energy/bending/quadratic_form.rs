@@ -16,15 +16,15 @@ pub(super) type Functional = [f64; WIDTH];
 /// A symmetric bilinear form on the unknowns of a hinge.
 pub(super) struct QuadraticForm {
     pub(super) rows: [Functional; WIDTH],
-    clamp: bool,
+    kept: f64,
 }
 
 impl QuadraticForm {
-    /// Zero. With `clamp` every term added later contributes its positive semidefinite part only.
-    pub(super) fn zero(clamp: bool) -> Self {
+    /// Zero. Every term added later contributes its positive semidefinite part and the share `kept` of its negative one.
+    pub(super) fn zero(kept: f64) -> Self {
         Self {
             rows: [[0.0; WIDTH]; WIDTH],
-            clamp,
+            kept,
         }
     }
 
@@ -39,29 +39,33 @@ impl QuadraticForm {
 
     /// Adds `k u²`.
     pub(super) fn add_square(&mut self, k: f64, u: &Functional) {
-        if k > 0.0 || !self.clamp {
+        let k = if k > 0.0 { k } else { self.kept * k };
+        if k != 0.0 {
             self.add_outer(k, u);
         }
     }
 
     /// Adds `k u v` for orthogonal functionals u, v.
     pub(super) fn add_product(&mut self, k: f64, u: &Functional, v: &Functional) {
-        if !self.clamp {
-            let half = 0.5 * k;
+        if self.kept > 0.0 {
+            let half = 0.5 * k * self.kept;
             for i in 0..WIDTH {
                 let (ui, vi) = (half * u[i], half * v[i]);
                 for j in 0..WIDTH {
                     self.rows[i][j] += ui * v[j] + vi * u[j];
                 }
             }
+        }
+        let clamped = (1.0 - self.kept) * k.abs();
+        if clamped == 0.0 {
             return;
         }
         let (uu, vv) = (dot(u, u), dot(v, v));
-        if uu > 0.0 && vv > 0.0 && k != 0.0 {
+        if uu > 0.0 && vv > 0.0 {
             let balance = (vv / uu).sqrt().sqrt();
             let (su, sv) = (balance, k.signum() / balance);
             let sum: Functional = std::array::from_fn(|i| su * u[i] + sv * v[i]);
-            self.add_outer(0.25 * k.abs(), &sum);
+            self.add_outer(0.25 * clamped, &sum);
         }
     }
 }

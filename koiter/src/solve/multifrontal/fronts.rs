@@ -106,7 +106,7 @@ pub(super) struct FrontTree {
 }
 
 /// A child is merged into its parent if the merged front has at most so many columns and at most this share of explicit
-/// zeros (the published defaults of supernodal codes, with the numbers of `docs/decisions/0005`).
+/// zeros (the published defaults of supernodal codes, see `docs/decisions/0005`).
 const AMALGAMATION: [(usize, f64); 4] = [(16, 0.8), (48, 0.3), (128, 0.1), (usize::MAX, 0.05)];
 
 /// Node columns `first..end` (positions) with sizes in unknowns.
