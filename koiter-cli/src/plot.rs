@@ -96,12 +96,13 @@ fn chart(title: &str, lines: &[Value], is_over: bool) -> Chart {
         .iter()
         .filter_map(|line| line["newton_iterations"].as_u64())
         .sum();
+    let steps = match lines.len() {
+        1 => "1 step".to_owned(),
+        count => format!("{count} steps"),
+    };
     let progress = if is_over { "" } else { " so far" };
     Chart {
-        title: format!(
-            "{title}: {} steps, {iterations} Newton iterations{progress}",
-            lines.len()
-        ),
+        title: format!("{title}: {steps}, {iterations} Newton iterations{progress}"),
         x_label: "time [s]".to_owned(),
         x_range: (0.0, times.iter().copied().fold(0.0, f64::max)),
         panels: vec![

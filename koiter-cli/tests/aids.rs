@@ -198,8 +198,8 @@ fn plots_are_made_of_whole_and_of_broken_figures() {
         std::fs::read_to_string(at("a.svg")).unwrap()
     };
     // One step; a last line that is torn; lines without figures; thousands of lines; a run that goes on.
-    assert!(bytes_of(&format!("{first}\n")).contains(": 1 steps"));
-    assert!(bytes_of(&format!("{first}\n{}", &first[..40])).contains(": 1 steps"));
+    assert!(bytes_of(&format!("{first}\n")).contains(": 1 step,"));
+    assert!(bytes_of(&format!("{first}\n{}", &first[..40])).contains(": 1 step,"));
     assert!(bytes_of("{}\n{\"time\": null}\n").contains("no figures"));
     let many = format!("{first}\n").repeat(5000);
     assert!(bytes_of(&many).contains(": 5000 steps"));

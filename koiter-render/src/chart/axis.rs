@@ -1,5 +1,6 @@
 //! Axes: values to pixels, ticks at round numbers.
 
+use super::{Panel, Style};
 use crate::legend::Scale;
 
 /// An axis of a panel.
@@ -98,6 +99,58 @@ impl Axis {
         }
         Scale::new(self.low, self.high).title(name, unit)
     }
+}
+
+/// The axis over all values of a panel, from its lower to its upper pixel; `None` without any values.
+pub(super) fn vertical_axis(panel: &Panel, pixels: (f64, f64)) -> Option<Axis> {
+    let sums = match panel.style {
+        Style::Stack => stack_heights(panel),
+        _ => panel
+            .series
+            .iter()
+            .flat_map(|series| &series.points)
+            .map(|point| point[1])
+            .collect(),
+    };
+    let is_log = panel.style == Style::LogLines;
+    let values = sums
+        .into_iter()
+        .filter(|value| value.is_finite() && (!is_log || *value > 0.0));
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    if low > high {
+        return None;
+    }
+    Some(match panel.style {
+        Style::LogLines => Axis::logarithmic(low, high, pixels),
+        // Zero is the bottom, and the curve does not touch the frame.
+        _ if low >= 0.0 => Axis::linear(0.0, if high > 0.0 { 1.06 * high } else { 1.0 }, pixels),
+        _ => {
+            let margin = 0.05 * (high.max(0.0) - low);
+            Axis::linear(low - margin, high.max(0.0) + margin, pixels)
+        }
+    })
+}
+
+fn stack_heights(panel: &Panel) -> Vec<f64> {
+    let count = panel
+        .series
+        .iter()
+        .map(|series| series.points.len())
+        .max()
+        .unwrap_or(0);
+    let height = |step: usize| -> f64 {
+        let values = panel
+            .series
+            .iter()
+            .filter_map(|series| series.points.get(step));
+        values
+            .map(|point| point[1])
+            .filter(|value| value.is_finite())
+            .sum()
+    };
+    (0..count).map(height).collect()
 }
 
 fn superscript(number: i32) -> String {

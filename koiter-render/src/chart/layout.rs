@@ -1,6 +1,6 @@
 //! From a chart to marks: where everything stands.
 
-use super::axis::Axis;
+use super::axis::{Axis, vertical_axis};
 use super::reduce::{columns, pieces};
 use super::{Anchor, Chart, Mark, Panel, Style};
 use crate::font::Typeface;
@@ -78,7 +78,7 @@ struct Sheet {
 
 impl Sheet {
     fn panel(&mut self, panel: &Panel, x: &Axis, frame: &Frame) {
-        let y = vertical_axis(panel, frame);
+        let y = vertical_axis(panel, (frame.bottom, frame.top));
         for (tick, _) in x.ticks() {
             let Some(at) = x.pixel(tick) else { continue };
             self.line(vec![[at, frame.top], [at, frame.bottom]], 1.0, GRID);
@@ -288,57 +288,4 @@ impl Sheet {
             color: INK,
         });
     }
-}
-
-/// The axis over all values of a panel; `None` without any.
-fn vertical_axis(panel: &Panel, frame: &Frame) -> Option<Axis> {
-    let sums = match panel.style {
-        Style::Stack => stack_heights(panel),
-        _ => panel
-            .series
-            .iter()
-            .flat_map(|series| &series.points)
-            .map(|point| point[1])
-            .collect(),
-    };
-    let is_log = panel.style == Style::LogLines;
-    let values = sums
-        .into_iter()
-        .filter(|value| value.is_finite() && (!is_log || *value > 0.0));
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
-    if low > high {
-        return None;
-    }
-    let pixels = (frame.bottom, frame.top);
-    Some(match panel.style {
-        Style::LogLines => Axis::logarithmic(low, high, pixels),
-        // Zero is the bottom, and the curve does not touch the frame.
-        _ if low >= 0.0 => Axis::linear(0.0, if high > 0.0 { 1.06 * high } else { 1.0 }, pixels),
-        _ => {
-            let margin = 0.05 * (high.max(0.0) - low);
-            Axis::linear(low - margin, high.max(0.0) + margin, pixels)
-        }
-    })
-}
-
-fn stack_heights(panel: &Panel) -> Vec<f64> {
-    let count = panel
-        .series
-        .iter()
-        .map(|series| series.points.len())
-        .max()
-        .unwrap_or(0);
-    let height = |step: usize| -> f64 {
-        let values = panel
-            .series
-            .iter()
-            .filter_map(|series| series.points.get(step));
-        values
-            .map(|point| point[1])
-            .filter(|value| value.is_finite())
-            .sum()
-    };
-    (0..count).map(height).collect()
 }

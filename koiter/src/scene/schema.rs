@@ -9,7 +9,7 @@ use schemars::transform::{Transform, transform_subschemas};
 use schemars::{Schema, SchemaGenerator, json_schema as schema};
 use serde_json::{Value, json};
 
-use super::spec::{FIELD_NAMES, MaterialSpec, SceneSpec};
+use super::spec::{ENERGY_NAMES, FIELD_NAMES, MaterialSpec, SceneSpec};
 use crate::material::presets;
 
 /// The schema as a JSON object.
@@ -34,6 +34,11 @@ pub(super) fn material(generator: &mut SchemaGenerator) -> Schema {
 /// Names of the presets.
 pub(super) fn preset_name(_: &mut SchemaGenerator) -> Schema {
     schema!({ "type": "string", "enum": presets::ALL.map(|preset| preset.name) })
+}
+
+/// An energy.
+pub(super) fn energy_name(_: &mut SchemaGenerator) -> Schema {
+    schema!({ "type": "string", "enum": ENERGY_NAMES })
 }
 
 /// A field of a run.

@@ -349,6 +349,7 @@ pub struct ProbeSpec {
     pub axis: Option<Axis>,
     /// Name of the energy; default: the sum.
     #[serde(default)]
+    #[schemars(schema_with = "super::schema::energy_name")]
     pub energy: Option<String>,
     /// Name or number of the constraint, for a reaction.
     #[serde(default)]
@@ -426,6 +427,11 @@ impl Default for OutputSpec {
         }
     }
 }
+
+/// Names of the energies that a probe can measure; one that a scene has not is 0.
+pub const ENERGY_NAMES: [&str; 6] = [
+    "membrane", "bending", "clamps", "gravity", "kinetic", "contact",
+];
 
 /// Names of the face fields a run can write.
 pub const FIELD_NAMES: [&str; 3] = ["strain", "bending_energy_density", "mean_curvature"];

@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use super::{
-    ConstraintSpec, FIELD_NAMES, MeshSpec, ObstacleSpec, ProbeQuantity, ProbeSpec, RotationSpec,
-    SceneSpec, SelectSpec, ShellSpec,
+    ConstraintSpec, ENERGY_NAMES, FIELD_NAMES, MeshSpec, ObstacleSpec, ProbeQuantity, ProbeSpec,
+    RotationSpec, SceneSpec, SelectSpec, ShellSpec,
 };
 use crate::material::presets;
 use crate::scene::document::suggest;
@@ -325,6 +325,13 @@ fn check_probe(path: &str, probe: &ProbeSpec, spec: &SceneSpec) -> Checked {
                 format!("the key '{key}' is missing: {what} needs it"),
             ));
         }
+    }
+    if let Some(name) = &probe.energy
+        && !ENERGY_NAMES.contains(&name.as_str())
+    {
+        let message = format!("there is no energy '{name}'");
+        return Err(error(Kind::UnknownName, &at("energy"), message)
+            .with_help(suggest(name, &ENERGY_NAMES)));
     }
     if let Some(shell) = &probe.shell {
         check_shell_name(&at("shell"), shell, spec)?;

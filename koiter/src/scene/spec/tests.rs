@@ -439,6 +439,13 @@ fn unknown_names_come_with_the_nearest_valid_one() {
             "did you mean 'position'",
         ),
         (
+            "quantity = \"position\"\nshell = \"cloth\"",
+            "quantity = \"energy\"\nenergy = \"kinetics\"",
+            "probe.height.energy",
+            (21, "\"kinetics\""),
+            "did you mean 'kinetic'",
+        ),
+        (
             "title = \"Test\"",
             "output.fields = [\"strian\"]",
             "output.fields.0",
