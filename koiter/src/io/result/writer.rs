@@ -90,11 +90,12 @@ impl ResultWriter {
                 path: folder.to_path_buf(),
             });
         }
+        // What may be refused comes before what is deleted.
+        keep_lines(&folder.join(STATS), stats)?;
         for index in (frames..reader.len()).rev() {
             let path = frame_path(folder, index);
             fs::remove_file(&path).map_err(while_trying("delete", &path))?;
         }
-        keep_lines(&folder.join(STATS), stats)?;
         remove_if_there(&folder.join(SUMMARY))?;
         // The scene may have got a later end.
         write_manifest(folder, manifest)?;
