@@ -1,4 +1,5 @@
 //! A simulation that is dropped and restored from its snapshot goes on to the same bits.
+#![cfg(feature = "serde")]
 
 use koiter::integrate::StepReport;
 use koiter::scene::{NoFiles, Scene, SceneFile, Simulation, Snapshot};
