@@ -200,7 +200,7 @@ impl<'a> Recorder<'a> {
 
 fn writing(error: ResultError) -> Failure {
     match error {
-        ResultError::NotEmpty { .. } => {
+        ResultError::NotEmpty { .. } | ResultError::InUse { .. } => {
             Failure::input(error).with_help("choose another folder with --out")
         }
         error => Failure::run(error),
@@ -210,7 +210,7 @@ fn writing(error: ResultError) -> Failure {
 /// A result that cannot be taken up again is an input that is wrong, unless the system refused.
 fn damaged(error: ResultError) -> Failure {
     match error {
-        ResultError::Io { .. } => Failure::run(error),
+        ResultError::Io { .. } | ResultError::InUse { .. } => writing(error),
         error => Failure::input(error).with_help(BEGIN_AGAIN),
     }
 }

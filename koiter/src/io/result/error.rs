@@ -26,6 +26,12 @@ pub enum ResultError {
         /// The folder.
         path: PathBuf,
     },
+    /// Another run writes to the folder.
+    #[error("another run is writing to {}; wait for its end, or choose another folder", path.display())]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The folder to be read is not a result.
     #[error("{} is not a Koiter result: {reason}", path.display())]
     NotAResult {

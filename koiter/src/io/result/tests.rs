@@ -132,6 +132,7 @@ fn old_result_is_cleared_but_strange_files_stay() {
     writer.write_summary(&json!({})).unwrap();
     fs::write(folder.path().join("notes.txt"), "mine").unwrap();
     fs::write(folder.path().join("checkpoint.bin"), "old").unwrap();
+    drop(writer);
     let mut writer = ResultWriter::create(folder.path(), &manifest(), &FACES).unwrap();
     writer.write_frame(&frame(9)).unwrap();
     let reader = ResultReader::open(folder.path()).unwrap();
@@ -140,6 +141,21 @@ fn old_result_is_cleared_but_strange_files_stay() {
     assert_eq!(reader.summary().unwrap(), None);
     assert!(folder.path().join("notes.txt").exists());
     assert!(!folder.path().join("checkpoint.bin").exists());
+}
+
+/// Not on systems whose folders cannot be locked.
+#[cfg(unix)]
+#[test]
+fn a_folder_has_one_writer_at_a_time() {
+    let (folder, writer) = written(2);
+    let create = || ResultWriter::create(folder.path(), &manifest(), &FACES);
+    let resume = || ResultWriter::resume(folder.path(), &manifest(), 1, 1);
+    for error in [create().unwrap_err(), resume().unwrap_err()] {
+        assert!(error.to_string().contains("another run is writing to"));
+    }
+    assert_eq!(ResultReader::open(folder.path()).unwrap().len(), 2);
+    drop(writer);
+    assert_eq!(resume().unwrap().num_frames(), 1);
 }
 
 #[test]
@@ -165,6 +181,7 @@ fn resumed_run_drops_what_came_after() {
     assert_eq!(reader.len(), 3);
     assert_eq!(reader.frame(2).unwrap().step, 77);
     assert_eq!(reader.stats().unwrap()[3], json!({"step": 77}));
+    drop(writer);
     assert!(
         ResultWriter::resume(folder.path(), &manifest(), 9, 0)
             .unwrap_err()

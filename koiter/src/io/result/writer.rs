@@ -1,5 +1,7 @@
 //! Writing a result folder.
 
+#[cfg(unix)]
+use std::fs::TryLockError;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -24,6 +26,7 @@ pub struct ResultWriter {
     num_faces: usize,
     num_frames: usize,
     stats: File,
+    _lock: Option<File>,
 }
 
 impl ResultWriter {
@@ -52,6 +55,10 @@ impl ResultWriter {
             .next()
             .is_none();
         if !is_empty {
+            check_is_ours(folder)?;
+        }
+        let lock = lock(folder)?;
+        if !is_empty {
             clear_old_result(folder)?;
         }
         let frames = folder.join(FRAMES);
@@ -61,7 +68,7 @@ impl ResultWriter {
         let path = folder.join(TOPOLOGY);
         let bytes = topology_file::encode(manifest.num_vertices(), faces);
         write_atomically(&path, &bytes).map_err(while_trying("write", &path))?;
-        Self::open_at(folder, manifest, 0)
+        Self::open_at(folder, manifest, 0, lock)
     }
 
     /// Goes on with an interrupted run of the same parts: keeps the first `frames` frames and `stats` lines of figures,
@@ -75,6 +82,7 @@ impl ResultWriter {
         frames: usize,
         stats: usize,
     ) -> Result<Self, ResultError> {
+        let lock = lock(folder)?;
         let reader = ResultReader::open(folder)?;
         if reader.manifest().parts != manifest.parts {
             return Err(ResultError::Broken {
@@ -99,10 +107,15 @@ impl ResultWriter {
         remove_if_there(&folder.join(SUMMARY))?;
         // The scene may have got a later end.
         write_manifest(folder, manifest)?;
-        Self::open_at(folder, manifest, frames)
+        Self::open_at(folder, manifest, frames, lock)
     }
 
-    fn open_at(folder: &Path, manifest: &Manifest, num_frames: usize) -> Result<Self, ResultError> {
+    fn open_at(
+        folder: &Path,
+        manifest: &Manifest,
+        num_frames: usize,
+        lock: Option<File>,
+    ) -> Result<Self, ResultError> {
         let path = folder.join(STATS);
         let stats = OpenOptions::new().create(true).append(true).open(&path);
         Ok(Self {
@@ -111,6 +124,7 @@ impl ResultWriter {
             num_faces: manifest.num_faces(),
             num_frames,
             stats: stats.map_err(while_trying("open", &path))?,
+            _lock: lock,
         })
     }
 
@@ -195,18 +209,41 @@ fn write_manifest(folder: &Path, manifest: &Manifest) -> Result<(), ResultError>
     write_atomically(&path, json.as_bytes()).map_err(while_trying("write", &path))
 }
 
-/// Deletes what an old result consists of; refuses a folder that is not one. The manifest stays until it is replaced.
-fn clear_old_result(folder: &Path) -> Result<(), ResultError> {
+/// Two runs that write to one folder would leave a mixture of both. The system drops the lock with the process, however
+/// that ends.
+#[cfg(unix)]
+fn lock(folder: &Path) -> Result<Option<File>, ResultError> {
+    let file = File::open(folder).map_err(while_trying("open", folder))?;
+    match file.try_lock() {
+        Ok(()) => Ok(Some(file)),
+        Err(TryLockError::WouldBlock) => Err(ResultError::InUse {
+            path: folder.to_path_buf(),
+        }),
+        // Some network file systems have no locks.
+        Err(TryLockError::Error(_)) => Ok(None),
+    }
+}
+
+/// Elsewhere folders cannot be opened as files.
+#[cfg(not(unix))]
+fn lock(_folder: &Path) -> Result<Option<File>, ResultError> {
+    Ok(None)
+}
+
+/// Refuses a folder with other content than a result.
+fn check_is_ours(folder: &Path) -> Result<(), ResultError> {
     match Manifest::read(folder) {
         // A damaged or newer manifest is still ours.
-        Ok(_) | Err(ResultError::Broken { .. } | ResultError::Version { .. }) => {}
-        Err(ResultError::NotAResult { .. }) => {
-            return Err(ResultError::NotEmpty {
-                path: folder.to_path_buf(),
-            });
-        }
-        Err(error) => return Err(error),
+        Ok(_) | Err(ResultError::Broken { .. } | ResultError::Version { .. }) => Ok(()),
+        Err(ResultError::NotAResult { .. }) => Err(ResultError::NotEmpty {
+            path: folder.to_path_buf(),
+        }),
+        Err(error) => Err(error),
     }
+}
+
+/// Deletes what an old result consists of. The manifest stays until it is replaced.
+fn clear_old_result(folder: &Path) -> Result<(), ResultError> {
     // The checkpoint first: what follows it is gone. Then the topology: without it a half-cleared result is not taken
     // for a whole one.
     for name in [CHECKPOINT, TOPOLOGY, SUMMARY, STATS, PROBES] {
