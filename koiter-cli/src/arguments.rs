@@ -146,6 +146,9 @@ pub(crate) struct SceneArguments {
     /// Set a value of the scene by dotted path, such as time.dt=0.01 or shell.cloth.thickness=5e-4
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
+    /// Refuse a scene that is estimated to need more memory, such as 64GB [default: what is available now]
+    #[arg(long, value_name = "SIZE", value_parser = crate::memory::parse_size)]
+    pub(crate) memory: Option<u64>,
 }
 
 #[derive(Debug, Args)]

@@ -16,6 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use koiter::integrate::StepReport;
 use koiter::scene::Scene;
 use koiter::scene::Simulation;
+use koiter::scene::model::Model;
 use koiter::scene::spec::MAX_STEPS;
 
 use crate::arguments::RunArguments;
@@ -95,10 +96,21 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
             "{} of {} steps did not converge",
             recorder.unconverged, recorder.summary.steps
         );
-        return Err(Failure::run(message)
-            .with_help("stats.jsonl has the diagnosis of each; try a smaller time.dt, or a larger solver.max_iterations"));
+        let failure = Failure::run(message)
+            .with_help("stats.jsonl has the diagnosis of each; try a smaller time.dt, or a larger solver.max_iterations");
+        return Err(tell_of_free_parts(failure, &loaded.scene.model));
     }
     Ok(())
+}
+
+/// A static run in which a shell can move without being deformed fails for this reason more often than for another.
+fn tell_of_free_parts(failure: Failure, model: &Model) -> Failure {
+    match model.free_parts().first() {
+        Some(part) => failure.with_help(format!(
+            "nothing but contact holds {part}; pin some vertices, or use integrator = \"implicit-euler\""
+        )),
+        None => failure,
+    }
 }
 
 /// Threads beyond a few a core only cost memory, and thousands exhaust the machine.

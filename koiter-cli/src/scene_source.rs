@@ -12,6 +12,7 @@ use koiter_render::CameraView;
 
 use crate::arguments::SceneArguments;
 use crate::failure::{Failure, print_warning};
+use crate::memory;
 
 /// A scene that ships with the program.
 struct Shipped {
@@ -73,7 +74,9 @@ pub(crate) fn load(arguments: &SceneArguments) -> Result<LoadedScene, Failure> {
     let found = find(&arguments.scene)?;
     let file = SceneFile::parse(&found.display, &found.text, &arguments.overrides)?;
     check_camera(&file)?;
-    let scene = Scene::build(&file, &found.meshes)?;
+    let memory = arguments.memory.or_else(memory::available_bytes);
+    let scene = Scene::build_within(&file, &found.meshes, memory.unwrap_or(u64::MAX))
+        .map_err(|error| tell_of_memory(error, arguments))?;
     scene.warnings.iter().for_each(print_warning);
     Ok(LoadedScene {
         name: found.name,
@@ -81,6 +84,15 @@ pub(crate) fn load(arguments: &SceneArguments) -> Result<LoadedScene, Failure> {
         document: file.document,
         scene,
     })
+}
+
+/// The library knows neither the machine nor how to contradict it.
+fn tell_of_memory(error: SceneError, arguments: &SceneArguments) -> SceneError {
+    match (error.kind, arguments.memory) {
+        (SceneErrorKind::TooLarge, None) => error
+            .with_help("make the mesh coarser; --memory 64GB, or another size, tries all the same"),
+        _ => error,
+    }
 }
 
 /// The library knows no cameras; a wrong one should not show only after a long run.

@@ -1,62 +1,12 @@
-//! The contract of the command line: exit statuses, streams, `--json`, messages.
+//! The contract of the command line: exit statuses, streams, `--json`.
+
+mod program;
 
 use std::path::Path;
-use std::process::{Command, Output};
 
 use serde_json::Value;
 
-fn koiter(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_koiter"));
-    command.args(arguments).output().expect("the binary runs")
-}
-
-fn status(output: &Output) -> i32 {
-    output.status.code().expect("the program ends by itself")
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-const SCENE: &str = r#"title = "Small"
-time = { end = 0.1, dt = 0.02 }
-
-[[shell]]
-name = "cloth"
-material = "cotton"
-mesh.grid = { size = [1.0, 1.0], cells = [4, 4] }
-mesh.translate = [0, 0, 1]
-
-[[obstacle]]
-name = "floor"
-plane = {}
-
-[[probe]]
-name = "height"
-quantity = "position"
-shell = "cloth"
-axis = "z"
-"#;
-
-/// Writes a scene to a folder; returns its path.
-fn write_scene(folder: &Path, text: &str) -> String {
-    let path = folder.join("scene.toml");
-    std::fs::write(&path, text).unwrap();
-    path.to_string_lossy().into_owned()
-}
-
-/// Runs the small scene into `out` without pictures.
-fn run_small(folder: &Path, more: &[&str]) -> Output {
-    let scene = write_scene(folder, SCENE);
-    let out = folder.join("out").to_string_lossy().into_owned();
-    let mut arguments = vec!["run", &scene, "--out", &out, "--no-film"];
-    arguments.extend(more);
-    koiter(&arguments)
-}
+use program::{SCENE, koiter, run_small, status, stderr, stdout, write_scene};
 
 #[test]
 fn help_has_examples_for_every_verb() {
@@ -93,108 +43,6 @@ fn wrong_arguments_have_status_2() {
 }
 
 #[test]
-fn a_scene_that_does_not_exist_is_answered_with_those_that_do() {
-    let output = koiter(&["check", "spere-drape"]);
-    assert_eq!(status(&output), 2);
-    assert!(
-        stderr(&output).contains("did you mean 'sphere-drape'?"),
-        "{}",
-        stderr(&output)
-    );
-}
-
-#[test]
-fn mistakes_in_a_scene_point_at_line_and_column_with_help() {
-    let folder = tempfile::tempdir().unwrap();
-    let cases = [
-        ("material", "matrial", ":6:1]", "did you mean 'material'"),
-        ("\"cotton\"", "\"coton\"", ":6:12]", "did you mean 'cotton'"),
-        (
-            "\"cotton\"",
-            "{ preset = \"cotton\", young = -1 }",
-            ":6:41]",
-            "larger than 0",
-        ),
-        ("dt = 0.02", "dt = 0", ":2:26]", "dt must be larger than 0"),
-        ("dt = 0.02", "dt = ", ":2:", "not valid TOML"),
-        (
-            "mesh.grid = { size = [1.0, 1.0], cells = [4, 4] }",
-            "mesh.file = \"no.obj\"",
-            ":7:13]",
-            "no.obj",
-        ),
-        (
-            "axis = \"z\"",
-            "select.vertices = [77]",
-            ":18:19]",
-            "vertex 77 does not exist",
-        ),
-    ];
-    for (from, to, place, words) in cases {
-        assert!(SCENE.contains(from), "{from}");
-        let scene = write_scene(folder.path(), &SCENE.replacen(from, to, 1));
-        for verb in ["check", "run"] {
-            let output = koiter(&[verb, &scene]);
-            let text = stderr(&output);
-            assert_eq!(status(&output), 2, "{text}");
-            assert!(
-                text.contains(&format!("scene.toml{place}")) && text.contains(words),
-                "{text}"
-            );
-            assert!(stdout(&output).is_empty());
-        }
-    }
-}
-
-#[test]
-fn mistakes_in_an_override_point_into_it() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = write_scene(folder.path(), SCENE);
-    let output = koiter(&["check", &scene, "--set", "shell.cloth.bending=bca"]);
-    let text = stderr(&output);
-    assert_eq!(status(&output), 2);
-    assert!(
-        text.contains("[--set shell.cloth.bending=bca:1:21]"),
-        "{text}"
-    );
-    assert!(text.contains("did you mean 'bac'?"), "{text}");
-    let output = koiter(&["run", &scene, "--set", "output.camera=fornt"]);
-    assert_eq!(status(&output), 2);
-    assert!(
-        stderr(&output).contains("unknown camera `fornt`"),
-        "{}",
-        stderr(&output)
-    );
-}
-
-#[test]
-fn broken_scene_files_are_refused_in_one_message() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    std::fs::write(&path, b"title = \"a\"\n\xff\xfe").unwrap();
-    let output = koiter(&["check", &path.to_string_lossy()]);
-    assert_eq!(status(&output), 2);
-    assert!(stderr(&output).contains("not UTF-8") && stderr(&output).contains("line 2"));
-    let output = koiter(&[
-        "check",
-        &folder
-            .path()
-            .join("..")
-            .join("nothing-here")
-            .to_string_lossy(),
-    ]);
-    assert_eq!(status(&output), 2);
-    std::fs::remove_file(&path).unwrap();
-    let output = koiter(&["check", &folder.path().to_string_lossy()]);
-    assert_eq!(status(&output), 2);
-    assert!(
-        stderr(&output).contains("cannot read the scene"),
-        "{}",
-        stderr(&output)
-    );
-}
-
-#[test]
 fn check_prints_one_json_object() {
     let folder = tempfile::tempdir().unwrap();
     let scene = write_scene(folder.path(), SCENE);
@@ -214,27 +62,6 @@ fn check_prints_one_json_object() {
         assert!(report.get(key).is_some(), "{key}");
     }
     assert!(stdout(&koiter(&["check", &scene])).contains("the scene is sound"));
-}
-
-#[test]
-fn implausible_numbers_are_warned_about_on_standard_error() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = write_scene(folder.path(), SCENE);
-    let output = koiter(&[
-        "check",
-        &scene,
-        "--set",
-        "shell.cloth.material.young=100",
-        "--json",
-    ]);
-    assert_eq!(status(&output), 0);
-    assert!(
-        stderr(&output).contains("Young's modulus of 1e2 Pa is unusual"),
-        "{}",
-        stderr(&output)
-    );
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(report["warnings"].as_array().unwrap().len(), 1);
 }
 
 #[test]
@@ -322,18 +149,6 @@ fn quiet_prints_nothing_and_until_ends_early() {
 }
 
 #[test]
-fn a_folder_with_other_content_is_not_overwritten() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("out");
-    std::fs::create_dir(&out).unwrap();
-    std::fs::write(out.join("thesis.tex"), "years of work").unwrap();
-    let output = run_small(folder.path(), &[]);
-    assert_eq!(status(&output), 2);
-    assert!(stderr(&output).contains("--out"), "{}", stderr(&output));
-    assert!(out.join("thesis.tex").exists());
-}
-
-#[test]
 fn a_run_ends_by_naming_its_pictures_and_render_and_export_read_it() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
@@ -378,6 +193,8 @@ fn a_run_ends_by_naming_its_pictures_and_render_and_export_read_it() {
         ("ply", "d", &["--frame", "0"], "d.ply"),
         ("vtu", "e.vtu", &["--frame", "0"], "e.vtu"),
         ("vtu", "f.pvd", &[], "f_00002.vtu"),
+        ("glb", "h.glb", &[], "h.glb"),
+        ("glb", "i", &["--frame", "1", "--color", "strain"], "i.glb"),
     ] {
         let output = koiter(
             &[
@@ -389,8 +206,24 @@ fn a_run_ends_by_naming_its_pictures_and_render_and_export_read_it() {
         assert_eq!(status(&output), 0, "{}", stderr(&output));
         assert!(Path::new(&path(file)).exists(), "{file}");
     }
-    let output = koiter(&["export", &result, "--to", "obj", "-o", &path("g.ply")]);
-    assert_eq!(status(&output), 2);
+    for more in [
+        &["--to", "obj", "-o", &path("g.ply")][..],
+        &["--to", "glb", "-o", &path("g.glb"), "--color", "strain"],
+        &[
+            "--to",
+            "glb",
+            "-o",
+            &path("g.glb"),
+            "--frame",
+            "0",
+            "--color",
+            "wind",
+        ],
+        &["--to", "glb", "-o", &path("g.glb"), "--frame", "99"],
+    ] {
+        let output = koiter(&[&["export", &result], more].concat());
+        assert_eq!(status(&output), 2, "{more:?}: {}", stderr(&output));
+    }
     let output = koiter(&[
         "export",
         &path("nothing"),
@@ -416,32 +249,6 @@ fn the_number_of_threads_does_not_change_the_frames() {
         std::fs::read(folder.path().join("out/frames/00005.bin")).unwrap()
     };
     assert_eq!(frames("1"), frames("2"));
-}
-
-#[test]
-fn an_intersecting_start_is_refused_by_name_with_a_coloured_mesh() {
-    let folder = tempfile::tempdir().unwrap();
-    let crossing = "\n[[shell]]\nname = \"flag\"\nmaterial = \"cotton\"\nmesh.grid = { size = [0.3, 0.3], cells = [1, 1] }\n\
-        mesh.rotate = { axis = [1, 0, 0], degrees = 90 }\nmesh.translate = [0.03, 0.02, 1]\n";
-    let scene = write_scene(folder.path(), &format!("{SCENE}{crossing}"));
-    let mesh = folder.path().join("start.ply");
-    for verb in ["run", "check"] {
-        let output = koiter(&[verb, &scene, "--debug-mesh", &mesh.to_string_lossy()]);
-        let text = stderr(&output);
-        assert_eq!(status(&output), 2, "{text}");
-        assert!(
-            text.contains("crosses") && text.contains("cloth") && text.contains("flag"),
-            "{text}"
-        );
-        let ply = std::fs::read_to_string(&mesh).unwrap();
-        assert!(
-            ply.contains("element face 34")
-                && ply.contains(" 220 30 30")
-                && ply.contains(" 170 185 205"),
-            "{ply}"
-        );
-        std::fs::remove_file(&mesh).unwrap();
-    }
 }
 
 #[test]

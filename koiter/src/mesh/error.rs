@@ -187,3 +187,6 @@ impl MeshError {
         self
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -138,6 +138,9 @@ pub struct Warning {
 }
 
 #[cfg(test)]
+mod messages;
+
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -9,6 +9,7 @@ mod bending_models;
 mod clamps;
 mod display;
 mod fingerprint;
+mod free_parts;
 pub mod model;
 pub mod schedule;
 mod simulation;
@@ -43,6 +44,7 @@ pub use self::{
     assemble::BuildError,
     bending_models::BendingModelInfo,
     display::PartTopology,
+    free_parts::FreePart,
     simulation::{Simulation, SystemStats},
     snapshot::{RestoreError, Snapshot},
 };

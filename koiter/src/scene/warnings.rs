@@ -1,8 +1,9 @@
 //! Numbers that can be simulated but are probably a slip of unit.
 
 use super::error::Warning;
+use super::free_parts::FreePart;
 use super::model::{Model, Shell};
-use super::spec::{SceneSpec, Units};
+use super::spec::{MeshSpec, SceneSpec, Units};
 
 /// Softer than any gel, harder than diamond.
 const PLAUSIBLE_YOUNG: [f64; 2] = [1e3, 1e12];
@@ -10,6 +11,10 @@ const PLAUSIBLE_YOUNG: [f64; 2] = [1e3, 1e12];
 const PLAUSIBLE_DENSITY: [f64; 2] = [1.0, 2.3e4];
 /// A shell larger than this [m] is probably in millimetres.
 const LARGE: f64 = 100.0;
+/// From a file without a unit, a shell larger than this [m] is so already …
+const LARGE_FOR_A_FILE: f64 = 5.0;
+/// … if it is this many times as large as thick: a roof is thicker, and cloth is smaller.
+const LARGE_BY_THICKNESS: f64 = 5e3;
 /// A shell smaller than this [m] is probably in a larger unit.
 const SMALL: f64 = 1e-4;
 /// The theory of thin shells and the contact stencils want triangles much larger than the thickness.
@@ -30,8 +35,11 @@ pub(super) fn find(model: &Model, spec: &SceneSpec) -> Vec<Warning> {
             let help = "densities are in kg/m³: 1 g/cm³ is 1000; area densities are divided by the thickness";
             warnings.push(warning(message, format!("{path}.material.density"), help));
         }
-        warnings.extend(check_size(shell, &path, typed.mesh.units));
+        warnings.extend(check_size(shell, &path, &typed.mesh));
         warnings.extend(check_thickness(shell, &path));
+    }
+    if !model.has_supports() {
+        warnings.extend(model.free_parts().iter().map(free_part));
     }
     warnings
 }
@@ -50,15 +58,27 @@ fn check_young(shell: &Shell, path: &str) -> Option<Warning> {
     Some(warning(message, format!("{path}.material.young"), help))
 }
 
-fn check_size(shell: &Shell, path: &str, units: Units) -> Option<Warning> {
+fn free_part(part: &FreePart) -> Warning {
+    let message = format!("nothing holds {part}: there is no static equilibrium, or more than one");
+    let help = "add a [[constraint]] that pins some vertices, or let inertia hold it: integrator = \"implicit-euler\"";
+    warning(message, format!("shell.{}", part.shell), help)
+}
+
+fn check_size(shell: &Shell, path: &str, mesh: &MeshSpec) -> Option<Warning> {
     let (low, high) = shell.surface.bounding_box();
     let size = (high - low).amax();
-    if (SMALL..=LARGE).contains(&size) {
+    let is_in_metres = mesh.units == Units::Metre;
+    let is_thin_file = mesh.file.is_some() && size > LARGE_BY_THICKNESS * shell.thickness;
+    let large = match is_in_metres && is_thin_file {
+        true => LARGE_FOR_A_FILE,
+        false => LARGE,
+    };
+    if (SMALL..=large).contains(&size) {
         return None;
     }
-    let help = if size <= LARGE {
+    let help = if size < SMALL {
         "is the unit of the mesh right? Lengths are in metres".to_owned()
-    } else if units == Units::Metre {
+    } else if is_in_metres {
         format!(
             "if the file is in millimetres ({:.3} m), write units = \"mm\"",
             size * 1e-3

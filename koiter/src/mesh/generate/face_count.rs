@@ -27,5 +27,7 @@ pub fn icosphere(subdivisions: usize) -> f64 {
 /// Of [`spherical_cap`](super::spherical_cap), about: its area over that of two triangles between rings.
 pub fn spherical_cap(angle: f64, hole_angle: f64, rings: usize) -> f64 {
     let step = (angle - hole_angle) / rings as f64;
-    2.0 * TAU * (hole_angle.cos() - angle.cos()) / (step * step) + 12.0 * rings as f64
+    // cos hole − cos angle without cancellation: a narrow band has as many triangles around as its width is small.
+    let [mean, half] = [angle + hole_angle, angle - hole_angle].map(|x| (0.5 * x).sin());
+    4.0 * TAU * mean * half / (step * step) + 12.0 * rings as f64
 }

@@ -119,7 +119,8 @@ pub fn cone(
         let t = k as f64 / along as f64;
         let radius = base_radius * (1.0 - t) + top * t;
         let is_apex = top_radius.is_none() && k == along;
-        let count = ((around as f64 * radius / base_radius).round() as usize).max(6);
+        // The ratio first: the product with a radius near the largest number would be infinite.
+        let count = ((around as f64 * (radius / base_radius)).round() as usize).max(6);
         Ring {
             radius,
             z: height * t,

@@ -231,7 +231,22 @@ fn implausible_numbers_are_warned_about_not_refused() {
         );
         assert!(warning.location.is_some());
     }
-    let text = "time = { end = 1, dt = 1 }\n[[shell]]\nname = \"a\"\nmaterial = \"cotton\"\nmesh.file = \"large.obj\"";
+    let text = "time = { end = 1, dt = 1 }\n[[shell]]\nname = \"a\"\nmaterial = \"cotton\"\nmesh.file = \"large.obj\"\n";
+    // 500 m for any shell, 50 m for one of a millimetre from a file; not if a unit or a scale was thought of.
+    for (more, is_warned) in [
+        ("", true),
+        ("mesh.scale = 0.1", true),
+        ("mesh.scale = 0.001", false),
+        ("mesh.units = \"mm\"", false),
+    ] {
+        let scene = build(&format!("{text}{more}")).unwrap();
+        assert_eq!(
+            !scene.warnings.is_empty(),
+            is_warned,
+            "{more}: {:?}",
+            scene.warnings
+        );
+    }
     let scene = build(text).unwrap();
     assert!(
         scene.warnings[0]
@@ -243,4 +258,37 @@ fn implausible_numbers_are_warned_about_not_refused() {
         scene.warnings
     );
     assert!(SCENE.contains(grid));
+}
+
+#[test]
+fn a_static_shell_that_nothing_holds_is_warned_about() {
+    let free = |more: &str| {
+        let text = format!(
+            "time = {{ end = 1, dt = 1 }}\nintegrator = \"quasi-static\"\n[[shell]]\nname = \"a\"\n\
+             material = \"cotton\"\nmesh.grid = {{ size = [1.0, 1.0], cells = [2, 2] }}\n{more}"
+        );
+        build(&text).unwrap()
+    };
+    let messages = |scene: &Scene| -> Vec<String> {
+        let warnings = scene.warnings.iter();
+        warnings.map(|warning| warning.message.clone()).collect()
+    };
+    let constraint = |axes: &str| {
+        format!("[[constraint]]\nshell = \"a\"\nselect.vertices = [0]\naxes = \"{axes}\"\n")
+    };
+    let text = |along| {
+        format!(
+            "nothing holds shell 'a' along {along}: there is no static equilibrium, or more than one"
+        )
+    };
+    assert_eq!(messages(&free("")), [text("x, y, z")]);
+    assert_eq!(messages(&free(&constraint("z"))), [text("x, y")]);
+    assert!(free(&constraint("xyz")).warnings.is_empty());
+    // It may come to rest on the floor.
+    let on_floor = free("[[obstacle]]\nname = \"floor\"\nplane = { point = [0, 0, -1] }\n");
+    assert!(on_floor.warnings.is_empty());
+    assert_eq!(
+        on_floor.model.free_parts()[0].to_string(),
+        "shell 'a' along x, y, z"
+    );
 }

@@ -1,0 +1,262 @@
+//! One mistake of every kind, and what is said about it.
+
+use std::collections::BTreeSet;
+
+use super::{SceneError, SceneErrorKind as Kind};
+use crate::scene::{NoFiles, Scene, SceneFile};
+
+const SCENE: &str = r#"title = "Test"
+time = { end = 1.0, dt = 0.1 }
+[[shell]]
+name = "cloth"
+material = "cotton"
+mesh.grid = { size = [1.0, 1.0], cells = [4, 4] }
+[[obstacle]]
+name = "rod"
+capsule = { ends = [[0, 0, -1], [1, 0, -1]], radius = 0.1 }
+[[constraint]]
+shell = "cloth"
+select.boundary = 0
+"#;
+
+/// Every kind, and its name; the compiler asks for those that are missing here, the test for those without a mistake.
+macro_rules! kinds {
+    ($($kind:ident),*) => {
+        const KINDS: &[&str] = &[$(stringify!($kind)),*];
+
+        fn name(kind: Kind) -> &'static str {
+            match kind {
+                $(Kind::$kind => stringify!($kind)),*
+            }
+        }
+    };
+}
+
+kinds!(
+    Syntax,
+    UnknownKey,
+    MissingKey,
+    WrongType,
+    OutOfRange,
+    UnknownName,
+    Conflict,
+    EmptySelection,
+    Mesh,
+    TooLarge
+);
+
+/// The mistake of the scene with one piece replaced.
+fn mistake(from: &str, to: &str) -> SceneError {
+    assert!(SCENE.contains(from), "{from}");
+    let text = SCENE.replacen(from, to, 1);
+    let error = SceneFile::parse("scene.toml", &text, &[])
+        .and_then(|file| Scene::build_within(&file, &NoFiles, 1_000_000_000).map(|_| ()));
+    error.expect_err("the scene has a mistake")
+}
+
+#[test]
+fn every_kind_of_mistake_has_a_place_and_says_what_to_do() {
+    let material = "material = \"cotton\"";
+    let grid = "mesh.grid = { size = [1.0, 1.0], cells = [4, 4] }";
+    let capsule = "capsule = { ends = [[0, 0, -1], [1, 0, -1]], radius = 0.1 }";
+    let boundary = "select.boundary = 0";
+    let cases = [
+        (
+            "end = 1.0,",
+            "end = 1.0;",
+            Kind::Syntax,
+            2,
+            "not valid TOML",
+        ),
+        (
+            "title",
+            "titel",
+            Kind::UnknownKey,
+            1,
+            "unknown key 'titel' | did you mean 'title'?",
+        ),
+        (
+            material,
+            "",
+            Kind::MissingKey,
+            3,
+            "neither a material preset nor 'material.young' | write material = \"cotton\"",
+        ),
+        (
+            grid,
+            "mesh = {}",
+            Kind::MissingKey,
+            6,
+            "no shape is given | give exactly one of file, grid,",
+        ),
+        (
+            capsule,
+            "",
+            Kind::MissingKey,
+            7,
+            "no shape is given | give exactly one of plane, sphere,",
+        ),
+        (
+            "cells = [4, 4]",
+            "cells = [4]",
+            Kind::WrongType,
+            6,
+            "expected a list of 2 values, found a list of 1",
+        ),
+        (
+            "size = [1.0, 1.0]",
+            "size = 1",
+            Kind::WrongType,
+            6,
+            "expected a list of 2 values, found the number 1",
+        ),
+        (
+            "[1, 0, -1]",
+            "[1, 0]",
+            Kind::WrongType,
+            9,
+            "expected a list of 3 numbers [x, y, z]",
+        ),
+        (
+            "dt = 0.1",
+            "dt = 1979-05-27",
+            Kind::WrongType,
+            2,
+            "a scene has no dates; write times as seconds",
+        ),
+        (
+            "title = \"Test\"",
+            "gravity_scale = [[0]]",
+            Kind::WrongType,
+            1,
+            "expected a pair [time, value]",
+        ),
+        (
+            "dt = 0.1",
+            "dt = 1e-12",
+            Kind::OutOfRange,
+            2,
+            "1.0e12 time steps | make dt larger or end smaller",
+        ),
+        (
+            "end = 1.0",
+            "end = inf",
+            Kind::OutOfRange,
+            2,
+            "inf is not a finite number | leave a limit out",
+        ),
+        (
+            "[1, 0, -1]",
+            "[0, 0, -1]",
+            Kind::OutOfRange,
+            9,
+            "the two ends are the same point | use a sphere",
+        ),
+        (
+            "title = \"Test\"",
+            "gravity_scale = []",
+            Kind::OutOfRange,
+            1,
+            "no keys | write pairs [time, value]",
+        ),
+        (
+            "\"cotton\"",
+            "\"coton\"",
+            Kind::UnknownName,
+            5,
+            "there is no material 'coton' | did you mean 'cotton'?",
+        ),
+        (
+            material,
+            "material = \"cotton\"\nbending = \"bca\"",
+            Kind::UnknownName,
+            6,
+            "unknown name 'bca' | did you mean 'bac'?",
+        ),
+        (
+            boundary,
+            "select.boundary = 0\naxes = \"xx\"",
+            Kind::UnknownName,
+            13,
+            "axes must be some of x, y and z, each once, but they are \"xx\" | write \"xyz\"",
+        ),
+        (
+            grid,
+            "mesh.grid = { size = [1, 1], cells = [2, 2] }\nmesh.file = \"a.obj\"",
+            Kind::Conflict,
+            6,
+            "2 shapes are given: file, grid | keep one of them",
+        ),
+        (
+            "title = \"Test\"",
+            "output = { every_steps = 2, every_seconds = 1 }",
+            Kind::Conflict,
+            1,
+            "every_steps and every_seconds exclude each other",
+        ),
+        (
+            boundary,
+            "select.vertices = [25]",
+            Kind::EmptySelection,
+            12,
+            "vertex 25 does not exist: the shell has 25 vertices, numbered from 0",
+        ),
+        (
+            boundary,
+            "select.boundary = 1",
+            Kind::EmptySelection,
+            12,
+            "boundary loop 1 does not exist: the shell has 1 loops, numbered from 0",
+        ),
+        (
+            boundary,
+            "select.box = { min = [2, 2, 2], max = [3, 3, 3] }",
+            Kind::EmptySelection,
+            12,
+            "the selection has no vertices; the shell's start shape lies between [-0.5000",
+        ),
+        (
+            grid,
+            "mesh.file = \"a.obj\"",
+            Kind::Mesh,
+            6,
+            "this scene may not read files",
+        ),
+        (
+            material,
+            "material = \"cotton\"\nrest_mesh.grid = { size = [1, 1], cells = [3, 3] }",
+            Kind::Mesh,
+            6,
+            "the rest mesh must have the triangles of the start mesh",
+        ),
+        (
+            "cells = [4, 4]",
+            "cells = [4, 0]",
+            Kind::Mesh,
+            6,
+            "the number of cells along y must be at least 1, but it is 0",
+        ),
+        (
+            "cells = [4, 4]",
+            "cells = [4000, 4000]",
+            Kind::TooLarge,
+            6,
+            "3.2e7 triangles and needs about 576.0 GB of memory; 1.0 GB are available | make the mesh coarser",
+        ),
+    ];
+    let mut seen = BTreeSet::new();
+    for (from, to, kind, line, words) in cases {
+        let error = mistake(from, to);
+        let help = error.help.as_deref().unwrap_or("");
+        let said = format!("{} | {help}", error.message);
+        assert!(said.contains(words), "'{words}' is not in: {said}");
+        assert_eq!(error.kind, kind, "{said}");
+        assert_eq!(
+            error.location.map(|place| place.line()),
+            Some(line),
+            "{said}"
+        );
+        seen.insert(name(kind));
+    }
+    assert_eq!(seen, KINDS.iter().copied().collect());
+}
