@@ -123,4 +123,7 @@ fn impossible_shapes_are_refused_with_the_value() {
     assert!(message(spherical_cap(1.0, 1.0, Some(1.5), 3)).contains("hole"));
     assert!(message(spherical_cap(1.0, 1.0, None, usize::MAX)).contains("coarser"));
     assert!(message(torus(1.0, 1.0, 6, 6)).contains("minor radius"));
+    // Found by damaged scenes: both took all memory.
+    assert!(message(spherical_cap(1.0, 1.0 + 1e-14, Some(1.0), 1)).contains("coarser"));
+    assert!(cone(1e308, 1.0, Some(0.1), 6, 2).is_err());
 }
