@@ -78,6 +78,7 @@ impl Run {
                 format!("shell.cloth.mesh.grid.cells=[{n},{n}]"),
                 format!("shell.cloth.bending={bending}"),
             ],
+            memory: None,
         })?
         .scene;
         let dt = scene.dt;

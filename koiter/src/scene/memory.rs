@@ -22,7 +22,8 @@ struct Share {
 pub(super) fn check_spec(spec: &SceneSpec, available: u64) -> Result<(), SceneError> {
     let shells = spec.shell.iter().map(|shell| {
         let ShellSpec { name, mesh, .. } = shell;
-        shell_share(name, shell.bending, generated_faces(mesh))
+        let rest = shell.rest_mesh.as_ref().map_or(0.0, generated_faces);
+        shell_share(name, shell.bending, generated_faces(mesh).max(rest))
     });
     let obstacles = spec.obstacle.iter().map(|obstacle| {
         let ObstacleSpec { name, mesh, .. } = obstacle;
