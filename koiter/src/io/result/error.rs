@@ -27,7 +27,7 @@ pub enum ResultError {
         path: PathBuf,
     },
     /// Another run writes to the folder.
-    #[error("another run is writing to {}; wait for its end, or choose another folder", path.display())]
+    #[error("another run is writing to {}; wait for its end", path.display())]
     InUse {
         /// The folder.
         path: PathBuf,
