@@ -141,7 +141,7 @@ fn friction_conforms_sticking_and_sliding() {
             smoothing: 0.02,
             layout: layout.clone(),
         };
-        contact.lag(&mut friction);
+        contact.lag(&q, &mut friction);
         check_global(&mut friction, &layout, &q).unwrap();
     }
 }

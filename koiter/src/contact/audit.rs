@@ -60,18 +60,17 @@ pub fn intersections(
         .collect();
     let mut tree = BoxTree::default();
     tree.rebuild(&face_boxes);
-    let mut found = tree.pairs(&edge_boxes, |edge, face| {
+    let check = |edge: u32, face: u32| {
         let (e, f) = (edges[edge as usize], faces[face as usize]);
-        !f.contains(&e[0])
+        let crossing = !f.contains(&e[0])
             && !f.contains(&e[1])
             && !ignore(e[0], f[0])
-            && crosses(at(e[0]), at(e[1]), [at(f[0]), at(f[1]), at(f[2])])
-    });
-    found.sort_unstable();
+            && crosses(at(e[0]), at(e[1]), [at(f[0]), at(f[1]), at(f[2])]);
+        crossing.then_some(Intersection { edge, face })
+    };
+    let mut found = (tree.pairs(&edge_boxes, usize::MAX, |_, _| false, check)).unwrap_or_default();
+    found.sort_unstable_by_key(|hit| (hit.edge, hit.face));
     found
-        .into_iter()
-        .map(|[edge, face]| Intersection { edge, face })
-        .collect()
 }
 
 #[cfg(test)]

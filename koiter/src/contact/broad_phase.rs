@@ -4,6 +4,8 @@
 //! the leaves upwards in one sweep. Its quality follows the order of the leaves; the order is kept while primitives move
 //! little and made anew otherwise ([`BoxTree::rebuild`]).
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use crate::Vec3;
 use crate::assembly::parallel_map;
 
@@ -171,49 +173,82 @@ impl BoxTree {
         }
     }
 
-    /// All pairs `(query, primitive)` with overlapping boxes for which `keep` holds, by query and then by leaf.
-    pub fn pairs(
+    /// What `check` makes of all pairs `(query, primitive)` with overlapping boxes, by query and then by leaf; `None` if
+    /// more than `limit` pairs are checked. `skip` tells pairs that do not count.
+    pub fn pairs<T: Send>(
         &self,
         queries: &[Aabb],
-        keep: impl Fn(u32, u32) -> bool + Sync + Send,
-    ) -> Vec<[u32; 2]> {
-        chunked(queries.len(), |query, found| {
+        limit: usize,
+        skip: impl Fn(u32, u32) -> bool + Sync + Send,
+        check: impl Fn(u32, u32) -> Option<T> + Sync + Send,
+    ) -> Option<Vec<T>> {
+        chunked(queries.len(), limit, |query, chunk| {
             self.overlapping(&queries[query], |leaf| {
-                if keep(query as u32, leaf) {
-                    found.push([query as u32, leaf]);
+                if !skip(query as u32, leaf) {
+                    chunk.add(check(query as u32, leaf));
                 }
             });
         })
     }
 
-    /// All pairs of different primitives of the tree with overlapping boxes for which `keep` holds, each once with the
-    /// smaller index first, in the order of the leaves.
-    pub fn self_pairs(&self, keep: impl Fn(u32, u32) -> bool + Sync + Send) -> Vec<[u32; 2]> {
-        chunked(self.leaves.len(), |leaf, found| {
+    /// The same for all pairs of different primitives of the tree, each once with the smaller index first, in the order
+    /// of the leaves.
+    pub fn self_pairs<T: Send>(
+        &self,
+        limit: usize,
+        skip: impl Fn(u32, u32) -> bool + Sync + Send,
+        check: impl Fn(u32, u32) -> Option<T> + Sync + Send,
+    ) -> Option<Vec<T>> {
+        chunked(self.leaves.len(), limit, |leaf, chunk| {
             let own = self.leaves[leaf];
             self.overlapping_from(leaf + 1, &self.boxes[self.width + leaf], |other| {
                 let (a, b) = (own.min(other), own.max(other));
-                if keep(a, b) {
-                    found.push([a, b]);
+                if !skip(a, b) {
+                    chunk.add(check(a, b));
                 }
             });
         })
     }
 }
 
-/// What `search` finds for `0..count`, in order, by tasks of [`QUERY_CHUNK`].
-fn chunked(
+/// What a task found.
+struct Chunk<T> {
+    found: Vec<T>,
+    checked: usize,
+}
+
+impl<T> Chunk<T> {
+    #[inline]
+    fn add(&mut self, item: Option<T>) {
+        self.checked += 1;
+        self.found.extend(item);
+    }
+}
+
+/// What `search` finds for `0..count`, in order, by tasks of [`QUERY_CHUNK`]; `None` if more than `limit` were checked,
+/// which ends the search early and does not depend on the order of tasks.
+fn chunked<T: Send>(
     count: usize,
-    search: impl Fn(usize, &mut Vec<[u32; 2]>) + Sync + Send,
-) -> Vec<[u32; 2]> {
-    parallel_map(count.div_ceil(QUERY_CHUNK), |chunk| {
-        let mut found = Vec::new();
+    limit: usize,
+    search: impl Fn(usize, &mut Chunk<T>) + Sync + Send,
+) -> Option<Vec<T>> {
+    let total = AtomicUsize::new(0);
+    let chunks = parallel_map(count.div_ceil(QUERY_CHUNK), |chunk| {
+        let mut out = Chunk {
+            found: Vec::new(),
+            checked: 0,
+        };
         for query in chunk * QUERY_CHUNK..((chunk + 1) * QUERY_CHUNK).min(count) {
-            search(query, &mut found);
+            let before = out.checked;
+            search(query, &mut out);
+            let checked = out.checked - before;
+            if total.fetch_add(checked, Ordering::Relaxed) + checked > limit {
+                break;
+            }
         }
-        found
-    })
-    .concat()
+        out.found
+    });
+    (total.into_inner() <= limit).then(|| chunks.into_iter().flatten().collect())
 }
 
 /// Queries a task takes at a time.
@@ -238,7 +273,8 @@ mod tests {
             let (a, b) = (boxes(count, 0.3), boxes(97, 0.7));
             let mut tree = BoxTree::default();
             tree.rebuild(&a);
-            let mut found = tree.pairs(&b, |_, _| true);
+            let every = |a, b| Some([a, b]);
+            let mut found = (tree.pairs(&b, usize::MAX, |_, _| false, every)).unwrap();
             found.sort_unstable();
             let mut expected = Vec::new();
             for (j, q) in b.iter().enumerate() {
@@ -249,7 +285,7 @@ mod tests {
                 );
             }
             assert_eq!(found, expected);
-            let mut pairs = tree.self_pairs(|_, _| true);
+            let mut pairs = (tree.self_pairs(usize::MAX, |_, _| false, every)).unwrap();
             pairs.sort_unstable();
             let mut expected = Vec::new();
             for i in 0..count {
@@ -257,6 +293,10 @@ mod tests {
                 expected.extend(later.map(|j| [i as u32, j as u32]));
             }
             assert_eq!(pairs, expected);
+            let bounded = |limit| tree.self_pairs(limit, |_, _| false, every).is_some();
+            assert!(
+                bounded(expected.len()) && (expected.is_empty() || !bounded(expected.len() - 1))
+            );
         }
     }
 

@@ -10,7 +10,7 @@ use crate::assembly::parallel_map;
 /// sweeps the whole scene. A sheet folded to a stack has about 70.
 const CANDIDATES_PER_VERTEX: usize = 400;
 
-/// The pairs, and the trees that find them.
+/// Pairs that may be active until the next search, and the trees that find them.
 #[derive(Default)]
 pub(super) struct Candidates {
     /// Vertex–face pairs, then edge–edge pairs.
@@ -40,17 +40,18 @@ impl SweptTree {
 }
 
 impl Candidates {
-    /// Finds all pairs whose surfaces come within `d_hat` of each other anywhere between `x` and `x + dx`, by their boxes.
-    /// Returns false, and leaves the pairs as they were, if there are too many.
-    pub(super) fn find(
+    /// What `check` makes of all pairs whose surfaces, by their boxes, come within `reach` of each other anywhere between
+    /// `x` and `x + dx`; vertex–face pairs, then edge–edge pairs. `None` if there are too many.
+    pub(super) fn find<T: Send>(
         &mut self,
         mesh: &CollisionMesh,
-        d_hat: f64,
+        reach: f64,
         x: &[Vec3],
         dx: Option<&[Vec3]>,
-    ) -> bool {
+        check: impl Fn(Pair) -> Option<T> + Sync + Send,
+    ) -> Option<Vec<T>> {
         let swept = |vertices: &[u32]| {
-            let margin = mesh.offset(vertices[0]) + 0.5 * d_hat;
+            let margin = mesh.offset(vertices[0]) + 0.5 * reach;
             let at = |v: &u32| x[*v as usize];
             match dx {
                 None => Aabb::around(vertices.iter().map(at), margin),
@@ -69,37 +70,37 @@ impl Candidates {
         self.face_tree.update(&face_boxes);
         self.edge_tree.update(&edge_boxes);
         let both_obstacles = |a: u32, b: u32| mesh.is_obstacle(a) && mesh.is_obstacle(b);
-        let vertex_faces = self.face_tree.tree.pairs(&vertex_boxes, |v, f| {
-            let face = &mesh.faces[f as usize];
-            !face.contains(&v) && !both_obstacles(v, face[0])
-        });
-        if vertex_faces.len() > limit {
-            return false;
-        }
-        let edge_edges = self.edge_tree.tree.self_pairs(|a, b| {
-            let (first, second) = (&mesh.edges[a as usize], &mesh.edges[b as usize]);
-            !second.contains(&first[0])
-                && !second.contains(&first[1])
-                && !both_obstacles(first[0], second[0])
-        });
-        if vertex_faces.len() + edge_edges.len() > limit {
-            return false;
-        }
-        let faces = vertex_faces.iter().map(|&[v, f]| {
-            let [a, b, c] = mesh.faces[f as usize];
-            Pair {
-                kind: PairKind::VertexFace,
-                vertices: [v, a, b, c],
-            }
-        });
-        let edges = edge_edges.iter().map(|&[a, b]| {
-            let ([a0, a1], [b0, b1]) = (mesh.edges[a as usize], mesh.edges[b as usize]);
-            Pair {
-                kind: PairKind::EdgeEdge,
-                vertices: [a0, a1, b0, b1],
-            }
-        });
-        self.pairs = faces.chain(edges).collect();
-        true
+        let mut found = self.face_tree.tree.pairs(
+            &vertex_boxes,
+            limit,
+            |v, f| {
+                let face = &mesh.faces[f as usize];
+                face.contains(&v) || both_obstacles(v, face[0])
+            },
+            |v, f| {
+                let [a, b, c] = mesh.faces[f as usize];
+                check(Pair {
+                    kind: PairKind::VertexFace,
+                    vertices: [v, a, b, c],
+                })
+            },
+        )?;
+        found.extend(self.edge_tree.tree.self_pairs(
+            limit,
+            |a, b| {
+                let (first, second) = (&mesh.edges[a as usize], &mesh.edges[b as usize]);
+                second.contains(&first[0])
+                    || second.contains(&first[1])
+                    || both_obstacles(first[0], second[0])
+            },
+            |a, b| {
+                let ([a0, a1], [b0, b1]) = (mesh.edges[a as usize], mesh.edges[b as usize]);
+                check(Pair {
+                    kind: PairKind::EdgeEdge,
+                    vertices: [a0, a1, b0, b1],
+                })
+            },
+        )?);
+        Some(found)
     }
 }

@@ -37,7 +37,7 @@ pub fn additive_ccd(
         PairKind::VertexFace => norms[0] + norms[1].max(norms[2]).max(norms[3]),
         PairKind::EdgeEdge => norms[0].max(norms[1]) + norms[2].max(norms[3]),
     };
-    let gap = |x: &[Vec3; 4]| pair.closest(x).distance_squared.sqrt() - touching_distance;
+    let gap = |x: &[Vec3; 4]| pair.distance_squared(x).sqrt() - touching_distance;
     let mut current = gap(x);
     let nearest = touching_distance + current - reach;
     // Written so that what is not a number counts as touching.

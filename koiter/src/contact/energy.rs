@@ -1,11 +1,13 @@
 //! The barrier energy of everything that may touch.
 
+use nalgebra::{SMatrix, SVector};
+
 use super::barrier::LogBarrier;
 use super::candidates::Candidates;
 use super::ccd::{Approach, additive_ccd};
 use super::collision_mesh::CollisionMesh;
 use super::friction::{Friction, FrictionContact};
-use super::pair::{Pair, PairKind, derivatives, mollify};
+use super::pair::{Pair, PairKind, derivatives, gradient, mollify};
 use super::plane::CollisionPlane;
 use crate::Vec3;
 use crate::assembly::{
@@ -32,14 +34,15 @@ pub struct Contact {
     kappa: f64,
     largest_kappa: f64,
     pub(super) candidates: Candidates,
-    active: Vec<ActivePair>,
+    /// Candidates whose barrier acts at the last refresh.
+    active: Vec<Pair>,
     active_planes: Vec<ActiveVertex>,
     smallest_gap: f64,
     limiter: Option<Limiter>,
 }
 
+/// What the barrier of a pair needs.
 struct ActivePair {
-    pair: Pair,
     positions: [Vec3; 4],
     closest: ClosestPoints,
     barrier: LogBarrier,
@@ -132,22 +135,35 @@ impl Contact {
         self.mesh.offset(pair.vertices[0]) + self.mesh.offset(pair.vertices[other])
     }
 
-    /// The pair with all its barrier needs, if it is active.
     #[inline]
-    fn activate(&self, pair: &Pair, q: &[f64]) -> Option<ActivePair> {
-        let positions = pair.vertices.map(|v| self.mesh.position(v, q));
-        let closest = pair.closest(&positions);
-        let barrier = LogBarrier::new(self.touching_distance(pair), self.d_hat);
-        barrier
-            .is_active(closest.distance_squared)
-            .then(|| ActivePair {
-                pair: *pair,
-                positions,
-                closest,
-                barrier,
-                threshold: self.mollifier_threshold(pair),
-                area: self.area(pair),
-            })
+    fn pair_positions(&self, pair: &Pair, q: &[f64]) -> [Vec3; 4] {
+        pair.vertices.map(|v| self.mesh.position(v, q))
+    }
+
+    #[inline]
+    fn pair_barrier(&self, pair: &Pair) -> LogBarrier {
+        LogBarrier::new(self.touching_distance(pair), self.d_hat)
+    }
+
+    fn activate(&self, pair: &Pair, q: &[f64]) -> ActivePair {
+        let positions = self.pair_positions(pair, q);
+        ActivePair {
+            closest: pair.closest(&positions),
+            positions,
+            barrier: self.pair_barrier(pair),
+            threshold: self.mollifier_threshold(pair),
+            area: self.area(pair),
+        }
+    }
+
+    fn pair_value(&self, pair: &Pair, q: &[f64]) -> f64 {
+        let positions = self.pair_positions(pair, q);
+        let (barrier, squared) = (self.pair_barrier(pair), pair.distance_squared(&positions));
+        if !barrier.is_active(squared) {
+            return 0.0;
+        }
+        let mollifier = mollify(&positions, self.mollifier_threshold(pair));
+        self.kappa * self.area(pair) * mollifier * barrier.value(squared)
     }
 
     fn mollifier_threshold(&self, pair: &Pair) -> f64 {
@@ -236,65 +252,89 @@ impl Contact {
         }
     }
 
-    /// Finds the candidate pairs of the whole way from `q` along `direction`; returns their number, or `None` if there
-    /// are too many.
+    /// Makes the candidates all pairs whose boxes come near each other on the whole way from `q` along `direction`; returns
+    /// their number, or `None` if there are too many.
     pub fn find_candidates(&mut self, q: &[f64], direction: &[f64]) -> Option<usize> {
         let (x, dx) = (self.positions(q), self.positions(direction));
-        (self.candidates.find(&self.mesh, self.d_hat, &x, Some(&dx)))
-            .then_some(self.candidates.pairs.len())
+        let found = (self.candidates).find(&self.mesh, self.d_hat, &x, Some(&dx), Some)?;
+        self.candidates.pairs = found;
+        Some(self.candidates.pairs.len())
     }
 
     /// How far each candidate pair may go from the positions `x` along `dx`, by vertices of the collision mesh.
     pub fn approaches(&self, x: &[Vec3], dx: &[Vec3]) -> Vec<Approach> {
         parallel_map(self.candidates.pairs.len(), |i| {
-            let pair = &self.candidates.pairs[i];
-            let at = |of: &[Vec3]| pair.vertices.map(|v| of[v as usize]);
-            additive_ccd(pair, &at(x), &at(dx), self.touching_distance(pair))
+            self.approach(&self.candidates.pairs[i], x, dx)
         })
+    }
+
+    fn approach(&self, pair: &Pair, x: &[Vec3], dx: &[Vec3]) -> Approach {
+        let at = |of: &[Vec3]| pair.vertices.map(|v| of[v as usize]);
+        additive_ccd(pair, &at(x), &at(dx), self.touching_distance(pair))
+    }
+
+    /// The pairs that come within reach of the barrier between `x` and `x + dx`, with the fraction of `dx` that each
+    /// allows; `None` if too many boxes overlap.
+    fn search(&mut self, x: &[Vec3], dx: &[Vec3]) -> Option<Vec<(Pair, f64)>> {
+        let mut candidates = std::mem::take(&mut self.candidates);
+        let near = |pair: Pair| {
+            let approach = self.approach(&pair, x, dx);
+            (approach.nearest < self.touching_distance(&pair) + self.d_hat)
+                .then_some((pair, approach.fraction))
+        };
+        let found = candidates.find(&self.mesh, self.d_hat, x, Some(dx), near);
+        self.candidates = candidates;
+        found
     }
 
     /// Collects the active pairs at `q` among the candidates.
     pub fn refresh(&mut self, q: &[f64]) {
-        self.active = parallel_map(self.candidates.pairs.len(), |i| {
-            self.activate(&self.candidates.pairs[i], q)
-        })
-        .into_iter()
-        .flatten()
-        .collect();
+        const CHUNK: usize = 1024;
+        let candidates = &self.candidates.pairs;
+        let chunks = parallel_map(candidates.len().div_ceil(CHUNK), |chunk| {
+            let mut active = Vec::new();
+            let mut smallest_gap = f64::INFINITY;
+            for pair in candidates[chunk * CHUNK..].iter().take(CHUNK) {
+                let squared = pair.distance_squared(&self.pair_positions(pair, q));
+                let barrier = self.pair_barrier(pair);
+                if barrier.is_active(squared) {
+                    active.push(*pair);
+                    smallest_gap = smallest_gap.min(squared.sqrt() - barrier.touching_distance);
+                }
+            }
+            (active, smallest_gap)
+        });
+        self.smallest_gap = (chunks.iter()).fold(f64::INFINITY, |gap, chunk| gap.min(chunk.1));
+        self.active.clear();
+        self.active
+            .extend(chunks.into_iter().flat_map(|chunk| chunk.0));
         self.active_planes = self.near_planes(q);
-        let pairs = self
-            .active
-            .iter()
-            .map(|a| a.closest.distance_squared.sqrt() - a.barrier.touching_distance);
-        let planes = self
-            .active_planes
-            .iter()
-            .map(|a| a.distance - self.mesh.offset(a.vertex));
-        self.smallest_gap = pairs.chain(planes).fold(f64::INFINITY, f64::min);
+        for near in &self.active_planes {
+            let gap = near.distance - self.mesh.offset(near.vertex);
+            self.smallest_gap = self.smallest_gap.min(gap);
+        }
     }
 
-    /// Normal forces and tangents at the last refresh, as the friction of the coming step.
-    pub fn lag(&self, friction: &mut Friction) {
+    /// Normal forces and tangents at `q`, that of the last refresh, as the friction of the coming step.
+    pub fn lag(&self, q: &[f64], friction: &mut Friction) {
         let coefficient = |a: f64, b: f64| (a * b).sqrt();
         let of_body = |v: u32| self.mesh.bodies[self.mesh.body[v as usize] as usize].friction;
         friction.contacts.clear();
-        for active in &self.active {
-            let other = if active.pair.kind == PairKind::VertexFace {
+        for pair in &self.active {
+            let active = self.activate(pair, q);
+            let other = if pair.kind == PairKind::VertexFace {
                 1
             } else {
                 2
             };
-            let mu = coefficient(
-                of_body(active.pair.vertices[0]),
-                of_body(active.pair.vertices[other]),
-            );
+            let mu = coefficient(of_body(pair.vertices[0]), of_body(pair.vertices[other]));
             let distance = active.closest.distance_squared.sqrt();
             let slope = active.barrier.derivatives(active.closest.distance_squared)[1];
             let m = mollify(&active.positions, active.threshold);
             let force = -2.0 * self.kappa * active.area * m * slope * distance;
             if mu * force > 0.0 {
                 friction.contacts.push(FrictionContact {
-                    points: active.pair.vertices.map(|v| self.mesh.vertices[v as usize]),
+                    points: pair.vertices.map(|v| self.mesh.vertices[v as usize]),
                     weights: active.closest.weights,
                     normal: active.closest.separation / distance,
                     limit: mu * force,
@@ -369,10 +409,12 @@ impl Energy for Contact {
 
     fn prepare(&mut self, q: &[f64]) {
         let x = self.positions(q);
-        if !self.candidates.find(&self.mesh, self.d_hat, &x, None) {
-            log::warn!(
+        let still = vec![Vec3::zeros(); x.len()];
+        match self.search(&x, &still) {
+            Some(found) => self.keep(found),
+            None => log::warn!(
                 "more candidate pairs than fit in memory: is d_hat larger than the mesh's edges?"
-            );
+            ),
         }
         self.smallest_gap = f64::INFINITY;
     }
@@ -391,13 +433,7 @@ impl Energy for Contact {
 
     fn value(&self, q: &[f64]) -> f64 {
         let pairs = ordered_sum(self.candidates.pairs.len(), |i| {
-            match self.activate(&self.candidates.pairs[i], q) {
-                None => 0.0,
-                Some(active) => {
-                    let b = active.barrier.value(active.closest.distance_squared);
-                    self.kappa * active.area * mollify(&active.positions, active.threshold) * b
-                }
-            }
+            self.pair_value(&self.candidates.pairs[i], q)
         });
         pairs
             + self
@@ -407,17 +443,12 @@ impl Energy for Contact {
                 .sum::<f64>()
     }
 
-    fn add_gradient(&self, _q: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, q: &[f64], gradient: &mut [f64]) {
         let locals = parallel_map(self.active.len(), |i| {
-            self.pair_derivatives(i, PsdProjection::Exact).0
+            self.pair_gradient(&self.active[i], q)
         });
-        for (active, local) in self.active.iter().zip(&locals) {
-            for (k, &v) in active.pair.vertices.iter().enumerate() {
-                let start = self.mesh.vertices[v as usize].0 as usize;
-                for axis in 0..3 {
-                    gradient[start + axis] += local[3 * k + axis];
-                }
-            }
+        for (pair, local) in self.active.iter().zip(&locals) {
+            self.scatter_gradient(pair, local, gradient);
         }
         for near in &self.active_planes {
             self.add_plane_gradient(near, self.plane_derivatives(near)[0], gradient);
@@ -426,7 +457,7 @@ impl Energy for Contact {
 
     fn add_derivatives(
         &self,
-        _q: &[f64],
+        q: &[f64],
         projection: PsdProjection,
         gradient: &mut [f64],
         hessian: &mut HessianBuilder<'_>,
@@ -434,13 +465,13 @@ impl Energy for Contact {
         const BATCH: usize = 4096;
         for first in (0..self.active.len()).step_by(BATCH) {
             let count = BATCH.min(self.active.len() - first);
-            let locals = parallel_map(count, |k| self.pair_derivatives(first + k, projection));
-            for (active, (local, block)) in self.active[first..].iter().zip(&locals) {
-                let dofs = active.pair.vertices.map(|v| self.mesh.vertices[v as usize]);
+            let locals = parallel_map(count, |k| {
+                self.pair_derivatives(&self.active[first + k], q, projection)
+            });
+            for (pair, (local, block)) in self.active[first..].iter().zip(&locals) {
+                self.scatter_gradient(pair, local, gradient);
+                let dofs = pair.vertices.map(|v| self.mesh.vertices[v as usize]);
                 for i in 0..4 {
-                    for axis in 0..3 {
-                        gradient[dofs[i].0 as usize + axis] += local[3 * i + axis];
-                    }
                     for j in 0..=i {
                         let (a, b) = (self.layout.node(dofs[i]), self.layout.node(dofs[j]));
                         hessian.add(a, b, i == j, |r, c| block[(3 * i + r, 3 * j + c)]);
@@ -464,13 +495,8 @@ impl Energy for Contact {
     }
 
     fn add_to_pattern(&self, _q: &[f64], pattern: &mut PatternBuilder) {
-        for active in &self.active {
-            pattern.couple(
-                active
-                    .pair
-                    .vertices
-                    .map(|v| self.node(self.mesh.vertices[v as usize])),
-            );
+        for pair in &self.active {
+            pattern.couple((pair.vertices).map(|v| self.node(self.mesh.vertices[v as usize])));
         }
     }
 
@@ -483,34 +509,26 @@ impl Energy for Contact {
         let mut dx = self.positions(direction);
         let mut reach = 1.0;
         self.limiter = None;
-        while !self.candidates.find(&self.mesh, self.d_hat, &x, Some(&dx)) {
+        let found = loop {
+            if let Some(found) = self.search(&x, &dx) {
+                break found;
+            }
             // 40 halvings bring any finite step below d̂; a scene too dense even then keeps its last candidates.
             reach *= 0.5;
+            self.limiter = Some(Limiter::Reach);
             if reach < 1e-12 {
-                self.limiter = Some(Limiter::Reach);
                 return 0.0;
             }
             dx.iter_mut().for_each(|d| *d *= 0.5);
-            self.limiter = Some(Limiter::Reach);
-        }
-        let approaches = self.approaches(&x, &dx);
+        };
         let mut bound = 1.0;
-        for (pair, approach) in self.candidates.pairs.iter().zip(&approaches) {
-            if approach.fraction < bound {
-                bound = approach.fraction;
+        for (pair, fraction) in &found {
+            if *fraction < bound {
+                bound = *fraction;
                 self.limiter = Some(Limiter::Pair(*pair));
             }
         }
-        // Most pairs of overlapping boxes are never near: the line search need not look at them again.
-        let candidates = std::mem::take(&mut self.candidates.pairs);
-        let near = |(pair, approach): (Pair, &Approach)| {
-            (approach.nearest < self.touching_distance(&pair) + self.d_hat).then_some(pair)
-        };
-        self.candidates.pairs = candidates
-            .into_iter()
-            .zip(&approaches)
-            .filter_map(near)
-            .collect();
+        self.keep(found);
         let (by_plane, limiter) = self.plane_bound(&x, &dx, q, direction);
         // The planes' own motion is not scaled with the reach: their bound is for the whole direction.
         if by_plane < bound {
@@ -520,12 +538,12 @@ impl Energy for Contact {
         bound * reach
     }
 
-    fn worst_element(&self, _q: &[f64]) -> Option<WorstElement> {
+    fn worst_element(&self, q: &[f64]) -> Option<WorstElement> {
         let norms = parallel_map(self.active.len(), |i| {
-            self.pair_derivatives(i, PsdProjection::Exact).0.norm()
+            self.pair_gradient(&self.active[i], q).norm()
         });
         let worst = (0..norms.len()).max_by(|&a, &b| norms[a].total_cmp(&norms[b]))?;
-        let description = self.describe_pair(&self.active[worst].pair);
+        let description = self.describe_pair(&self.active[worst]);
         Some(WorstElement {
             description,
             gradient_norm: norms[worst],
@@ -552,21 +570,42 @@ impl Contact {
         self.layout.node(dof)
     }
 
+    /// The pairs that the coming evaluations look at.
+    fn keep(&mut self, found: Vec<(Pair, f64)>) {
+        self.candidates.pairs.clear();
+        (self.candidates.pairs).extend(found.into_iter().map(|(pair, _)| pair));
+    }
+
+    fn pair_gradient(&self, pair: &Pair, q: &[f64]) -> SVector<f64, 12> {
+        let at = self.activate(pair, q);
+        gradient(&at.closest, &at.barrier, &at.positions, at.threshold) * (self.kappa * at.area)
+    }
+
     fn pair_derivatives(
         &self,
-        index: usize,
+        pair: &Pair,
+        q: &[f64],
         projection: PsdProjection,
-    ) -> (nalgebra::SVector<f64, 12>, nalgebra::SMatrix<f64, 12, 12>) {
-        let active = &self.active[index];
+    ) -> (SVector<f64, 12>, SMatrix<f64, 12, 12>) {
+        let at = self.activate(pair, q);
         let (gradient, hessian) = derivatives(
-            &active.closest,
-            &active.barrier,
-            &active.positions,
-            active.threshold,
+            &at.closest,
+            &at.barrier,
+            &at.positions,
+            at.threshold,
             projection,
         );
-        let scale = self.kappa * active.area;
+        let scale = self.kappa * at.area;
         (gradient * scale, hessian * scale)
+    }
+
+    fn scatter_gradient(&self, pair: &Pair, local: &SVector<f64, 12>, gradient: &mut [f64]) {
+        for (k, &v) in pair.vertices.iter().enumerate() {
+            let start = self.mesh.vertices[v as usize].0 as usize;
+            for axis in 0..3 {
+                gradient[start + axis] += local[3 * k + axis];
+            }
+        }
     }
 
     fn add_plane_gradient(&self, near: &ActiveVertex, slope: f64, gradient: &mut [f64]) {

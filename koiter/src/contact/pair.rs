@@ -22,7 +22,10 @@ use nalgebra::{SMatrix, SVector};
 use super::barrier::LogBarrier;
 use crate::Vec3;
 use crate::assembly::{PsdProjection, project_to_psd};
-use crate::geometry::{ClosestPoints, edge_edge, point_triangle};
+use crate::geometry::{
+    ClosestPoints, edge_edge, edge_edge_distance_squared, point_triangle,
+    point_triangle_distance_squared,
+};
 
 /// What a pair is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +54,15 @@ impl Pair {
             PairKind::EdgeEdge => edge_edge(&x[0], &x[1], &x[2], &x[3]),
         }
     }
+
+    /// Squared distance at the given positions of the four vertices [m²].
+    #[inline]
+    pub fn distance_squared(&self, x: &[Vec3; 4]) -> f64 {
+        match self.kind {
+            PairKind::VertexFace => point_triangle_distance_squared(&x[0], &x[1], &x[2], &x[3]),
+            PairKind::EdgeEdge => edge_edge_distance_squared(&x[0], &x[1], &x[2], &x[3]),
+        }
+    }
 }
 
 /// m and its derivative m', at `c` with threshold ε: value 1 beyond it.
@@ -73,11 +85,36 @@ fn squared_sine(x: &[Vec3; 4]) -> f64 {
 
 /// m for a pair; `threshold` is ε, or 0 for pairs without mollifier.
 pub(super) fn mollify(x: &[Vec3; 4], threshold: f64) -> f64 {
-    if threshold > 0.0 {
-        mollifier(squared_sine(x), threshold)[0]
-    } else {
-        1.0
+    mollifier_at(x, threshold)[0]
+}
+
+/// Gradient of `m(c) b(D)`.
+pub(super) fn gradient(
+    closest: &ClosestPoints,
+    barrier: &LogBarrier,
+    x: &[Vec3; 4],
+    threshold: f64,
+) -> SVector<f64, 12> {
+    let [value, first, _] = barrier.derivatives(closest.distance_squared);
+    let [m, m1, _] = mollifier_at(x, threshold);
+    let along_distance = distance_gradient(closest) * (m * first);
+    if m1 == 0.0 {
+        return along_distance;
     }
+    along_distance + squared_sine_derivatives(x).0 * (m1 * value)
+}
+
+/// m and its derivatives for a pair; `threshold` is ε, or 0 for pairs without mollifier.
+fn mollifier_at(x: &[Vec3; 4], threshold: f64) -> [f64; 3] {
+    if threshold > 0.0 {
+        mollifier(squared_sine(x), threshold)
+    } else {
+        [1.0, 0.0, 0.0]
+    }
+}
+
+fn distance_gradient(closest: &ClosestPoints) -> SVector<f64, 12> {
+    SVector::from_fn(|i, _| 2.0 * closest.weights[i / 3] * closest.separation[i % 3])
 }
 
 /// Gradient and Hessian of `m(c) b(D)`.
@@ -89,14 +126,9 @@ pub(super) fn derivatives(
     projection: PsdProjection,
 ) -> (SVector<f64, 12>, SMatrix<f64, 12, 12>) {
     let [value, first, second] = barrier.derivatives(closest.distance_squared);
-    let outer = |a: &[f64; 4], v: &Vec3| SVector::<f64, 12>::from_fn(|i, _| a[i / 3] * v[i % 3]);
-    let distance_gradient = outer(&closest.weights, &closest.separation) * 2.0;
+    let distance_gradient = distance_gradient(closest);
     let kept = projection.kept();
-    let [m, m1, m2] = if threshold > 0.0 {
-        mollifier(squared_sine(x), threshold)
-    } else {
-        [1.0, 0.0, 0.0]
-    };
+    let [m, m1, m2] = mollifier_at(x, threshold);
     if m1 == 0.0 {
         return (
             distance_gradient * first,
@@ -243,6 +275,10 @@ mod tests {
         }
         let (same, projected) = at(&x, PsdProjection::Clamp);
         assert_eq!(same, gradient);
+        assert_eq!(
+            super::gradient(&pair.closest(&x), &barrier, &x, threshold),
+            gradient
+        );
         let (_, partial) = at(&x, PsdProjection::Partial(0.3));
         let blend = projected + (hessian - projected) * 0.3;
         assert!((partial - blend).norm() < 1e-13 * hessian.norm());

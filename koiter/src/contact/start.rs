@@ -57,13 +57,11 @@ impl Contact {
     pub fn touching(&mut self, q: &[f64]) -> Vec<TouchingPair> {
         let x = self.positions(q);
         let mut found = self.crossings(&x);
-        if self.candidates.find(&self.mesh, 0.0, &x, None) {
-            found.extend(
-                self.candidates
-                    .pairs
-                    .iter()
-                    .filter_map(|pair| self.overlap(pair, &x)),
-            );
+        let mut candidates = std::mem::take(&mut self.candidates);
+        let overlaps = candidates.find(&self.mesh, 0.0, &x, None, |pair| self.overlap(&pair, &x));
+        self.candidates = candidates;
+        if let Some(overlaps) = overlaps {
+            found.extend(overlaps);
         } else {
             // So many boxes overlap only where thick surfaces lie within each other.
             let description = "more pairs of primitives than can be listed".to_owned();
@@ -121,7 +119,10 @@ impl Contact {
     /// The pair, if its surfaces are no further apart than nothing.
     fn overlap(&self, pair: &Pair, x: &[Vec3]) -> Option<TouchingPair> {
         let positions = pair.vertices.map(|v| x[v as usize]);
-        let gap = pair.closest(&positions).distance_squared.sqrt() - self.touching_distance(pair);
+        let gap = pair.distance_squared(&positions).sqrt() - self.touching_distance(pair);
+        if gap > 0.0 {
+            return None;
+        }
         let ([a, b, c, d], mesh) = (pair.vertices, &self.mesh);
         let names = match pair.kind {
             PairKind::VertexFace => [mesh.describe_vertex(a), mesh.describe("face", &[b, c, d])],
@@ -132,7 +133,7 @@ impl Contact {
         };
         let description = names.join(" touches ");
         let vertices = pair.vertices.to_vec();
-        (gap <= 0.0).then_some(TouchingPair {
+        Some(TouchingPair {
             description,
             gap,
             crosses: false,

@@ -66,10 +66,78 @@ impl ClosestPoints {
     }
 }
 
+/// Parameter of the point of the line `a b` nearest to `p`: 0 at `a`, 1 at `b`; not a number for an edge without length.
+#[inline]
+fn along_edge(p: &Vec3, a: &Vec3, along: &Vec3) -> f64 {
+    (p - a).dot(along) / along.norm_squared()
+}
+
+/// Barycentric coordinates (u, v) of `p` in the plane of the triangle `a, a + ab, a + ac`, with its normal and the squared
+/// length of that, if they are inside.
+#[inline]
+fn inside_prism(ap: &Vec3, ab: &Vec3, ac: &Vec3) -> Option<(f64, f64, Vec3, f64)> {
+    let normal = ab.cross(ac);
+    let norm_squared = normal.norm_squared();
+    let u = ap.cross(ac).dot(&normal) / norm_squared;
+    let v = ab.cross(ap).dot(&normal) / norm_squared;
+    (u > 0.0 && v > 0.0 && u + v < 1.0).then_some((u, v, normal, norm_squared))
+}
+
+/// Parameters (s, t) of the closest points of the lines of two edges, if they are inside both.
+#[inline]
+fn inside_edges(ea: &Vec3, eb: &Vec3, r0: &Vec3) -> Option<(f64, f64)> {
+    let (aa, bb, ab) = (ea.norm_squared(), eb.norm_squared(), ea.dot(eb));
+    let (ar, br) = (ea.dot(r0), eb.dot(r0));
+    let determinant = aa * bb - ab * ab;
+    // Edges within about 1e-5 rad of parallel are served by their end points: the interior solution is ill-conditioned
+    // there, and one of the ends is at the same distance to second order.
+    if !(determinant > 1e-10 * aa * bb) {
+        return None;
+    }
+    let s = (ab * br - bb * ar) / determinant;
+    let t = (aa * br - ab * ar) / determinant;
+    (s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0).then_some((s, t))
+}
+
+/// Squared distance of point `p` and edge `a b` [m²].
+#[inline]
+pub fn point_edge_distance_squared(p: &Vec3, a: &Vec3, b: &Vec3) -> f64 {
+    let along = b - a;
+    let u = along_edge(p, a, &along);
+    // Written so that an edge without length is its first point.
+    let u = if u > 0.0 { u.min(1.0) } else { 0.0 };
+    (p - a - along * u).norm_squared()
+}
+
+/// Squared distance of point `p` and triangle `a b c` [m²].
+#[inline]
+pub fn point_triangle_distance_squared(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> f64 {
+    let ap = p - a;
+    match inside_prism(&ap, &(b - a), &(c - a)) {
+        Some((_, _, normal, norm_squared)) => ap.dot(&normal).powi(2) / norm_squared,
+        None => point_edge_distance_squared(p, a, b)
+            .min(point_edge_distance_squared(p, b, c))
+            .min(point_edge_distance_squared(p, c, a)),
+    }
+}
+
+/// Squared distance of edges `a0 a1` and `b0 b1` [m²].
+#[inline]
+pub fn edge_edge_distance_squared(a0: &Vec3, a1: &Vec3, b0: &Vec3, b1: &Vec3) -> f64 {
+    let (ea, eb, r0) = (a1 - a0, b1 - b0, a0 - b0);
+    match inside_edges(&ea, &eb, &r0) {
+        Some((s, t)) => (r0 + ea * s - eb * t).norm_squared(),
+        None => point_edge_distance_squared(a0, b0, b1)
+            .min(point_edge_distance_squared(a1, b0, b1))
+            .min(point_edge_distance_squared(b0, a0, a1))
+            .min(point_edge_distance_squared(b1, a0, a1)),
+    }
+}
+
 /// Closest points of point `p` and edge `a b`; the weights are those of `(p, a, b, unused)`.
 pub fn point_edge(p: &Vec3, a: &Vec3, b: &Vec3) -> ClosestPoints {
     let along = b - a;
-    let u = (p - a).dot(&along) / along.norm_squared();
+    let u = along_edge(p, a, &along);
     if !(u > 0.0) {
         ClosestPoints::fixed([1.0, -1.0, 0.0, 0.0], p - a)
     } else if u >= 1.0 {
@@ -102,11 +170,7 @@ fn embed(pair: ClosestPoints, slots: [usize; 3], sign: f64) -> ClosestPoints {
 /// Closest points of point `p` and triangle `a b c`; the weights are those of `(p, a, b, c)`.
 pub fn point_triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> ClosestPoints {
     let (ab, ac, ap) = (b - a, c - a, p - a);
-    let normal = ab.cross(&ac);
-    let norm_squared = normal.norm_squared();
-    let u = ap.cross(&ac).dot(&normal) / norm_squared;
-    let v = ab.cross(&ap).dot(&normal) / norm_squared;
-    if u > 0.0 && v > 0.0 && u + v < 1.0 {
+    if let Some((u, v, normal, norm_squared)) = inside_prism(&ap, &ab, &ac) {
         let separation = normal * (ap.dot(&normal) / norm_squared);
         return ClosestPoints::fixed([1.0, u + v - 1.0, -u, -v], separation)
             .slide(-ab, [0.0, 1.0, -1.0, 0.0])
@@ -128,19 +192,10 @@ pub fn point_triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> ClosestPoints {
 /// Closest points of edges `a0 a1` and `b0 b1`; the weights are those of `(a0, a1, b0, b1)`.
 pub fn edge_edge(a0: &Vec3, a1: &Vec3, b0: &Vec3, b1: &Vec3) -> ClosestPoints {
     let (ea, eb, r0) = (a1 - a0, b1 - b0, a0 - b0);
-    let (aa, bb, ab) = (ea.norm_squared(), eb.norm_squared(), ea.dot(&eb));
-    let (ar, br) = (ea.dot(&r0), eb.dot(&r0));
-    let determinant = aa * bb - ab * ab;
-    // Edges within about 1e-5 rad of parallel are served by their end points: the interior solution is ill-conditioned
-    // there, and one of the ends is at the same distance to second order.
-    if determinant > 1e-10 * aa * bb {
-        let s = (ab * br - bb * ar) / determinant;
-        let t = (aa * br - ab * ar) / determinant;
-        if s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0 {
-            return ClosestPoints::fixed([1.0 - s, s, t - 1.0, -t], r0 + ea * s - eb * t)
-                .slide(ea, [-1.0, 1.0, 0.0, 0.0])
-                .slide(-eb, [0.0, 0.0, 1.0, -1.0]);
-        }
+    if let Some((s, t)) = inside_edges(&ea, &eb, &r0) {
+        return ClosestPoints::fixed([1.0 - s, s, t - 1.0, -t], r0 + ea * s - eb * t)
+            .slide(ea, [-1.0, 1.0, 0.0, 0.0])
+            .slide(-eb, [0.0, 0.0, 1.0, -1.0]);
     }
     let mut best = embed(point_edge(a0, b0, b1), [0, 2, 3], 1.0);
     for (pair, slots, sign) in [
@@ -158,6 +213,38 @@ pub fn edge_edge(a0: &Vec3, a1: &Vec3, b0: &Vec3, b1: &Vec3) -> ClosestPoints {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn distances_alone_are_those_of_the_closest_points() {
+        let mut state = 7u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for trial in 0..3000 {
+            // Every tenth is flat, so that edges without length and faces without area occur.
+            let flat = if trial % 10 == 0 { 0.0 } else { 1.0 };
+            let [a, b, c, d]: [Vec3; 4] =
+                std::array::from_fn(|_| Vec3::new(random(), flat * random(), flat * random()));
+            for (full, alone) in [
+                (
+                    point_triangle(&a, &b, &c, &d),
+                    point_triangle_distance_squared(&a, &b, &c, &d),
+                ),
+                (
+                    edge_edge(&a, &b, &c, &d),
+                    edge_edge_distance_squared(&a, &b, &c, &d),
+                ),
+            ] {
+                assert!(
+                    (full.distance_squared - alone).abs() < 1e-12,
+                    "trial {trial}"
+                );
+            }
+        }
+    }
 
     fn second(pair: &ClosestPoints) -> [[f64; 12]; 12] {
         let mut h = [[0.0; 12]; 12];

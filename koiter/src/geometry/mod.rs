@@ -12,6 +12,9 @@ mod closest;
 mod jet;
 mod wing;
 
-pub use closest::{ClosestPoints, edge_edge, point_edge, point_triangle};
+pub use closest::{
+    ClosestPoints, edge_edge, edge_edge_distance_squared, point_edge, point_edge_distance_squared,
+    point_triangle, point_triangle_distance_squared,
+};
 pub use jet::{Jet, Real};
 pub use wing::{Wing, WingFunctional, hinge_angle};

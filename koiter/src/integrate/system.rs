@@ -165,7 +165,7 @@ impl System {
             contact.forget_search();
             contact.prepare(q);
             contact.refresh(q);
-            contact.lag(&mut friction);
+            contact.lag(q, &mut friction);
         }
         let mut energies: Vec<&mut dyn Energy> = Vec::new();
         for energy in &mut self.elastic {
