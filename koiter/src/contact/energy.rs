@@ -252,13 +252,29 @@ impl Contact {
         }
     }
 
-    /// Makes the candidates all pairs whose boxes come near each other on the whole way from `q` along `direction`; returns
-    /// their number, or `None` if there are too many.
-    pub fn find_candidates(&mut self, q: &[f64], direction: &[f64]) -> Option<usize> {
+    /// Makes the candidates all pairs whose boxes come near each other on the whole way from `q` along `direction`, and
+    /// returns whether there are few enough. A line search never stores them all: it hands each to collision detection.
+    pub fn find_candidates(&mut self, q: &[f64], direction: &[f64]) -> bool {
+        let found = self.sweep(q, direction, Some);
+        let enough = found.is_some();
+        self.candidates.pairs = found.unwrap_or_default();
+        enough
+    }
+
+    /// Number of those pairs; `None` if there are too many.
+    pub fn count_candidates(&mut self, q: &[f64], direction: &[f64]) -> Option<usize> {
+        self.sweep(q, direction, |_| Some(()))
+            .map(|found| found.len())
+    }
+
+    fn sweep<T: Send>(
+        &mut self,
+        q: &[f64],
+        direction: &[f64],
+        check: impl Fn(Pair) -> Option<T> + Sync + Send,
+    ) -> Option<Vec<T>> {
         let (x, dx) = (self.positions(q), self.positions(direction));
-        let found = (self.candidates).find(&self.mesh, self.d_hat, &x, Some(&dx), Some)?;
-        self.candidates.pairs = found;
-        Some(self.candidates.pairs.len())
+        (self.candidates).find(&self.mesh, self.d_hat, &x, Some(&dx), check)
     }
 
     /// How far each candidate pair may go from the positions `x` along `dx`, by vertices of the collision mesh.
