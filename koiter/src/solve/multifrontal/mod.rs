@@ -11,7 +11,7 @@ mod upward;
 use self::fronts::FrontTree;
 use self::numeric::Elimination;
 use self::substitute::Substitution;
-use self::upward::upward;
+use self::upward::{Buffers, upward};
 use super::cholesky::{NotPositiveDefinite, SparseCholesky};
 use super::ordering::NodeOrdering;
 use crate::assembly::{Pattern, SymmetricMatrix};
@@ -21,6 +21,7 @@ use crate::assembly::{Pattern, SymmetricMatrix};
 pub struct Multifrontal {
     tree: FrontTree,
     factor: Vec<f64>,
+    buffers: Buffers,
 }
 
 impl SparseCholesky for Multifrontal {
@@ -38,8 +39,10 @@ impl SparseCholesky for Multifrontal {
             tree: &self.tree,
             entries: &matrix.values,
         };
-        upward(&self.tree, &elimination, &mut self.factor).map_err(|position| NotPositiveDefinite {
-            dof: self.tree.unknowns[position] as usize,
+        upward(&self.tree, &elimination, &self.buffers, &mut self.factor).map_err(|position| {
+            NotPositiveDefinite {
+                dof: self.tree.unknowns[position] as usize,
+            }
         })
     }
 
@@ -55,7 +58,8 @@ impl SparseCholesky for Multifrontal {
             factor: &self.factor,
             width,
         };
-        upward(&self.tree, &substitution, &mut x).expect("substitution has no pivots to refuse");
+        upward(&self.tree, &substitution, &self.buffers, &mut x)
+            .expect("substitution has no pivots to refuse");
         substitution.backward(&mut x);
         for (at, &unknown) in self.tree.unknowns.iter().enumerate() {
             for k in 0..width {

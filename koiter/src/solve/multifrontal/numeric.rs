@@ -8,9 +8,12 @@ use std::ops::Range;
 use faer::MatMut;
 use faer::prelude::{Reborrow, ReborrowMut};
 
-use super::dense::{Scratch, factorize_panel, subtract_square};
+use super::dense::{Scratch, factorize_panel, join, subtract_square};
 use super::fronts::{BlockPlace, Front, FrontTree, Lie};
 use super::upward::UpwardPass;
+
+/// Fronts of more entries than this are gathered by two tasks.
+const LARGE_FRONT: usize = 1 << 17;
 
 /// Gathers and eliminates; what a front owns is its panel of the factor.
 pub(super) struct Elimination<'a> {
@@ -36,16 +39,31 @@ impl UpwardPass for Elimination<'_> {
         &self,
         front: &Front,
         panel: &mut [f64],
-        children: impl Iterator<Item = (&'a Front, &'a [f64])>,
+        children: impl Iterator<Item = (&'a Front, &'a [f64])> + Clone + Send,
         update: &mut [f64],
         scratch: &mut Scratch,
     ) -> Result<(), usize> {
-        panel.fill(0.0);
-        for block in &self.tree.blocks[front.blocks.clone()] {
-            copy_block(block, self.entries, front.num_rows(), panel);
-        }
-        for (child, child_update) in children {
-            extend_add(child, child_update, front, panel, update);
+        let (rows, columns) = (front.num_rows(), front.num_columns());
+        let updates = children.clone();
+        let gather = || {
+            panel.fill(0.0);
+            for block in &self.tree.blocks[front.blocks.clone()] {
+                copy_block(block, self.entries, rows, panel);
+            }
+            for (child, child_update) in children {
+                extend_add(child, child_update, 0..columns, panel, rows);
+            }
+        };
+        let add_updates = || {
+            for (child, child_update) in updates {
+                extend_add(child, child_update, columns..rows, update, rows - columns);
+            }
+        };
+        if rows * rows > LARGE_FRONT {
+            join(gather, add_updates);
+        } else {
+            gather();
+            add_updates();
         }
         eliminate(front, panel, update, scratch)
     }
@@ -66,27 +84,26 @@ fn copy_block(block: &BlockPlace, entries: &[f64], num_rows: usize, panel: &mut 
     }
 }
 
-/// Adds the update of a child to its parent's front.
+/// Adds those columns of a child's update that fall on the given columns of its parent's front. `target` has these columns
+/// of `height` entries each.
 fn extend_add(
     child: &Front,
     child_update: &[f64],
-    parent: &Front,
-    panel: &mut [f64],
-    update: &mut [f64],
+    columns: Range<usize>,
+    target: &mut [f64],
+    height: usize,
 ) {
-    let (columns, rows) = (parent.num_columns(), parent.num_rows());
+    // A panel has all rows of the front, an update those below the panel: both start at the row of their first column.
+    let first_row = columns.start;
     for (k, run) in child.runs.iter().enumerate() {
+        if !columns.contains(&(run.parent as usize)) {
+            continue;
+        }
         for offset in 0..run.length as usize {
             let from = run.child as usize + offset;
             let source = &child_update[from * child.num_update..][..child.num_update];
             let to = run.parent as usize + offset;
-            // The column where it goes, and the row of the front that the column's first entry is.
-            let (target, first_row) = if to < columns {
-                (&mut panel[to * rows..][..rows], 0)
-            } else {
-                let start = (to - columns) * parent.num_update;
-                (&mut update[start..][..parent.num_update], columns)
-            };
+            let target = &mut target[(to - columns.start) * height..][..height];
             let mut add = |child_row: usize, parent_row: usize, length: usize| {
                 let target = &mut target[parent_row - first_row..][..length];
                 for (t, s) in target.iter_mut().zip(&source[child_row..][..length]) {

@@ -52,7 +52,7 @@ impl UpwardPass for Substitution<'_> {
         &self,
         front: &Front,
         own: &mut [f64],
-        children: impl Iterator<Item = (&'a Front, &'a [f64])>,
+        children: impl Iterator<Item = (&'a Front, &'a [f64])> + Clone + Send,
         update: &mut [f64],
         _: &mut Scratch,
     ) -> Result<(), usize> {

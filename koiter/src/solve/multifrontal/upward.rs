@@ -5,6 +5,7 @@
 //! the bits do not depend on the number of threads.
 
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 use super::dense::{Scratch, join};
 use super::fronts::{Front, FrontTree};
@@ -25,10 +26,34 @@ pub(super) trait UpwardPass: Sync {
         &self,
         front: &Front,
         own: &mut [f64],
-        children: impl Iterator<Item = (&'a Front, &'a [f64])>,
+        children: impl Iterator<Item = (&'a Front, &'a [f64])> + Clone + Send,
         update: &mut [f64],
         scratch: &mut Scratch,
     ) -> Result<(), usize>;
+}
+
+/// Memory of updates, kept from pass to pass: asking the system for it anew costs more than filling it.
+#[derive(Debug, Default)]
+pub(super) struct Buffers(Mutex<Vec<Vec<f64>>>);
+
+impl Buffers {
+    /// An empty buffer, of `size` entries' capacity if there is one.
+    fn take(&self, size: usize) -> Vec<f64> {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let fitting = (kept.iter().enumerate())
+            .filter(|(_, buffer)| buffer.capacity() >= size)
+            .min_by_key(|(_, buffer)| buffer.capacity());
+        match fitting.map(|(index, _)| index) {
+            Some(index) => kept.swap_remove(index),
+            None => Vec::with_capacity(size),
+        }
+    }
+
+    fn give_back(&self, mut buffer: Vec<f64>) {
+        buffer.clear();
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.push(buffer);
+    }
 }
 
 /// Visits all fronts; `data` is the whole of what they own.
@@ -38,84 +63,91 @@ pub(super) trait UpwardPass: Sync {
 pub(super) fn upward(
     tree: &FrontTree,
     pass: &impl UpwardPass,
+    buffers: &Buffers,
     data: &mut [f64],
 ) -> Result<(), usize> {
-    subtrees(tree, pass, &tree.roots, data).map(|_| ())
+    let walk = Walk {
+        tree,
+        pass,
+        buffers,
+    };
+    for update in walk.subtrees(&tree.roots, data)? {
+        buffers.give_back(update);
+    }
+    Ok(())
 }
 
-/// Visits neighbouring subtrees; returns their updates, in order.
-fn subtrees(
-    tree: &FrontTree,
-    pass: &impl UpwardPass,
-    roots: &[u32],
-    data: &mut [f64],
-) -> Result<Vec<Vec<f64>>, usize> {
-    let small = tree.flops(roots) < pass.task();
-    match *roots {
-        [] => Ok(Vec::new()),
-        [root] if small => Ok(vec![sequential(tree, pass, root, data)?]),
-        [root] => Ok(vec![parallel(tree, pass, root, data)?]),
-        _ => {
-            let (left, right) = tree.halve(roots);
-            let start = pass.own(tree.first_front(left[0])).start;
-            let middle = pass.own(tree.first_front(right[0])).start;
-            let (left_data, right_data) = data.split_at_mut(middle - start);
-            let (a, b) = join(
-                || subtrees(tree, pass, left, left_data),
-                || subtrees(tree, pass, right, right_data),
-            );
-            let mut updates = a?;
-            updates.extend(b?);
-            Ok(updates)
+struct Walk<'a, P> {
+    tree: &'a FrontTree,
+    pass: &'a P,
+    buffers: &'a Buffers,
+}
+
+impl<P: UpwardPass> Walk<'_, P> {
+    /// Where the data of a subtree starts.
+    fn start(&self, root: u32) -> usize {
+        self.pass.own(self.tree.first_front(root)).start
+    }
+
+    /// Visits neighbouring subtrees; returns their updates, in order.
+    fn subtrees(&self, roots: &[u32], data: &mut [f64]) -> Result<Vec<Vec<f64>>, usize> {
+        let small = self.tree.flops(roots) < self.pass.task();
+        match *roots {
+            [] => Ok(Vec::new()),
+            [root] if small => Ok(vec![self.sequential(root, data)?]),
+            [root] => Ok(vec![self.parallel(root, data)?]),
+            _ => {
+                let (left, right) = self.tree.halve(roots);
+                let middle = self.start(right[0]) - self.start(left[0]);
+                let (left_data, right_data) = data.split_at_mut(middle);
+                let (a, b) = join(
+                    || self.subtrees(left, left_data),
+                    || self.subtrees(right, right_data),
+                );
+                let mut updates = a?;
+                updates.extend(b?);
+                Ok(updates)
+            }
         }
     }
-}
 
-/// A large subtree: its children's subtrees in parallel, then its root.
-fn parallel(
-    tree: &FrontTree,
-    pass: &impl UpwardPass,
-    root: u32,
-    data: &mut [f64],
-) -> Result<Vec<f64>, usize> {
-    let front = tree.front(root);
-    let start = pass.own(tree.first_front(root)).start;
-    let (below, own) = data.split_at_mut(pass.own(front).start - start);
-    let updates = subtrees(tree, pass, &front.children, below)?;
-    let children = (front.children.iter().zip(&updates))
-        .map(|(&child, update)| (tree.front(child), update.as_slice()));
-    let mut update = vec![0.0; pass.update_size(front)];
-    pass.visit(front, own, children, &mut update, &mut Scratch::new())?;
-    Ok(update)
-}
-
-/// A small subtree. A front's update is made above those of its children and then moved down over them.
-fn sequential(
-    tree: &FrontTree,
-    pass: &impl UpwardPass,
-    root: u32,
-    data: &mut [f64],
-) -> Result<Vec<f64>, usize> {
-    let start = pass.own(tree.first_front(root)).start;
-    let mut stack: Vec<f64> = Vec::new();
-    let mut scratch = Scratch::new();
-    for front in tree.subtree(root) {
-        let top = stack.len();
-        let children = front.children.iter().map(|&child| tree.front(child));
-        let base = top - children.clone().map(|c| pass.update_size(c)).sum::<usize>();
-        stack.resize(top + pass.update_size(front), 0.0);
-        let (held, update) = stack.split_at_mut(top);
-        let mut at = base;
-        let children = children.map(|child| {
-            let range = at..at + pass.update_size(child);
-            at = range.end;
-            (child, &held[range])
-        });
-        let own = pass.own(front);
-        let own = &mut data[own.start - start..own.end - start];
-        pass.visit(front, own, children, update, &mut scratch)?;
-        stack.copy_within(top.., base);
-        stack.truncate(base + pass.update_size(front));
+    /// A large subtree: its children's subtrees in parallel, then its root.
+    fn parallel(&self, root: u32, data: &mut [f64]) -> Result<Vec<f64>, usize> {
+        let front = self.tree.front(root);
+        let (below, own) = data.split_at_mut(self.pass.own(front).start - self.start(root));
+        let updates = self.subtrees(&front.children, below)?;
+        let children = (front.children.iter().zip(&updates))
+            .map(|(&child, update)| (self.tree.front(child), update.as_slice()));
+        let mut update = self.buffers.take(self.pass.update_size(front));
+        update.resize(self.pass.update_size(front), 0.0);
+        (self.pass).visit(front, own, children, &mut update, &mut Scratch::new())?;
+        updates.into_iter().for_each(|u| self.buffers.give_back(u));
+        Ok(update)
     }
-    Ok(stack)
+
+    /// A small subtree. A front's update is made above those of its children and then moved down over them.
+    fn sequential(&self, root: u32, data: &mut [f64]) -> Result<Vec<f64>, usize> {
+        let (tree, pass) = (self.tree, self.pass);
+        let start = self.start(root);
+        let mut stack = self.buffers.take(pass.update_size(tree.front(root)));
+        let mut scratch = Scratch::new();
+        for front in tree.subtree(root) {
+            let top = stack.len();
+            let children = front.children.iter().map(|&child| tree.front(child));
+            let base = top - children.clone().map(|c| pass.update_size(c)).sum::<usize>();
+            stack.resize(top + pass.update_size(front), 0.0);
+            let (held, update) = stack.split_at_mut(top);
+            let children = children.scan(base, |at, child| {
+                let update = &held[*at..*at + pass.update_size(child)];
+                *at += update.len();
+                Some((child, update))
+            });
+            let own = pass.own(front);
+            let own = &mut data[own.start - start..own.end - start];
+            pass.visit(front, own, children, update, &mut scratch)?;
+            stack.copy_within(top.., base);
+            stack.truncate(base + pass.update_size(front));
+        }
+        Ok(stack)
+    }
 }
