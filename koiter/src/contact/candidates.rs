@@ -6,9 +6,12 @@ use super::pair::{Pair, PairKind};
 use crate::Vec3;
 use crate::assembly::parallel_map;
 
-/// Candidates a vertex, on average, before a step is searched in a shorter reach: bounds memory when a wild Newton step
-/// sweeps the whole scene. A sheet folded to a stack has about 70.
-const CANDIDATES_PER_VERTEX: usize = 400;
+/// Candidates a vertex, on average, before a step is searched in a shorter reach: bounds the time when a wild Newton step
+/// sweeps the whole scene. A sheet folded to a stack has about 250.
+const CANDIDATES_PER_VERTEX: usize = 1000;
+
+/// Candidates that every scene may have: a coarse obstacle of long thin faces has many for each of its few vertices.
+const CANDIDATES_AT_LEAST: usize = 20_000_000;
 
 /// Pairs that may be active until the next search, and the trees that find them.
 #[derive(Default)]
@@ -63,7 +66,7 @@ impl Candidates {
                 ),
             }
         };
-        let limit = CANDIDATES_PER_VERTEX * mesh.vertices.len() + 100_000;
+        let limit = CANDIDATES_AT_LEAST.max(CANDIDATES_PER_VERTEX * mesh.vertices.len());
         let vertex_boxes = parallel_map(mesh.vertices.len(), |v| swept(&[v as u32]));
         let edge_boxes = parallel_map(mesh.edges.len(), |e| swept(&mesh.edges[e]));
         let face_boxes = parallel_map(mesh.faces.len(), |f| swept(&mesh.faces[f]));

@@ -10,9 +10,9 @@ use crate::Vec3;
 /// Fraction of the initial gap that is always kept.
 const SLACK: f64 = 0.1;
 
-/// Advances before a shorter, still safe, step is returned. Grazing motions converge slowly; 1000 advances were never
-/// needed where it matters, and the fallback only costs a Newton iteration.
-const MAX_ADVANCES: usize = 1000;
+/// Advances before a shorter, still safe, step is returned. Grazing motions converge slowly; so many are never needed where
+/// it matters, and the fallback only costs a Newton iteration.
+const MAX_ADVANCES: usize = 128;
 
 /// How far two primitives may move towards each other.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::barrier::LogBarrier;
+use super::broad_phase::Aabb;
 use super::candidates::Candidates;
 use super::ccd::{Approach, additive_ccd};
 use super::collision_mesh::CollisionMesh;
@@ -61,6 +62,24 @@ enum Limiter {
     Pair(Pair),
     Plane(u32, usize),
     Reach,
+    Length,
+}
+
+/// Steps longer than this many times the extent of everything are cut: searching them would only take time.
+const LONGEST_STEP: f64 = 10.0;
+
+/// The fraction of a motion that is worth searching.
+fn sensible_reach(x: &[Vec3], dx: &[Vec3]) -> f64 {
+    let bounds = Aabb::around(x.iter().copied(), 0.0);
+    let extent = (0..3)
+        .map(|k| bounds.high[k] - bounds.low[k])
+        .fold(0.0, f64::max);
+    let longest = dx.iter().map(Vec3::norm).fold(0.0, f64::max);
+    if longest > LONGEST_STEP * extent && extent > 0.0 {
+        LONGEST_STEP * extent / longest
+    } else {
+        1.0
+    }
 }
 
 /// What a contact energy tells after a step.
@@ -432,7 +451,8 @@ impl Energy for Contact {
                 "more candidate pairs than fit in memory: is d_hat larger than the mesh's edges?"
             ),
         }
-        self.smallest_gap = f64::INFINITY;
+        // The gap of the start, so that only what shrinks from here on stiffens the barrier.
+        self.refresh(q);
     }
 
     fn begin_iteration(&mut self, q: &[f64]) {
@@ -523,8 +543,12 @@ impl Energy for Contact {
     fn max_step(&mut self, q: &[f64], direction: &[f64]) -> f64 {
         let x = self.positions(q);
         let mut dx = self.positions(direction);
-        let mut reach = 1.0;
         self.limiter = None;
+        let mut reach = sensible_reach(&x, &dx);
+        if reach < 1.0 {
+            dx.iter_mut().for_each(|d| *d *= reach);
+            self.limiter = Some(Limiter::Length);
+        }
         let found = loop {
             if let Some(found) = self.search(&x, &dx) {
                 break found;
@@ -545,8 +569,8 @@ impl Energy for Contact {
             }
         }
         self.keep(found);
-        let (by_plane, limiter) = self.plane_bound(&x, &dx, q, direction);
-        // The planes' own motion is not scaled with the reach: their bound is for the whole direction.
+        let scaled: Vec<f64> = direction.iter().map(|d| d * reach).collect();
+        let (by_plane, limiter) = self.plane_bound(&x, &dx, q, &scaled);
         if by_plane < bound {
             bound = by_plane;
             self.limiter = limiter;
@@ -577,6 +601,9 @@ impl Energy for Contact {
                 )
             }
             Limiter::Reach => "the number of candidate pairs".into(),
+            Limiter::Length => {
+                format!("its length: it is over {LONGEST_STEP} times the scene's size")
+            }
         })
     }
 }

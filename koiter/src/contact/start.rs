@@ -53,7 +53,7 @@ impl StartError {
 
 impl Contact {
     /// Everything that touches or intersects at `q`: meshes by exact predicates, independently of the contact code;
-    /// thickness, balls, capsules and planes by their distances. Forgets the candidates of a line search.
+    /// thickness, balls, capsules and planes by their distances.
     pub fn touching(&mut self, q: &[f64]) -> Vec<TouchingPair> {
         let x = self.positions(q);
         let mut found = self.crossings(&x);

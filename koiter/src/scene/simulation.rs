@@ -103,9 +103,11 @@ impl Simulation {
         self.apply_schedules(time);
         let prescribed = self.prescribed_at(time);
         let before = self.state.velocities.clone();
-        let report = self
-            .integrator
-            .step(&mut self.system, &mut self.state, &prescribed, dt)?;
+        let result = (self.integrator).step(&mut self.system, &mut self.state, &prescribed, dt);
+        if result.is_err() {
+            self.apply_schedules(self.state.time);
+        }
+        let report = result?;
         if self.model.integrator == IntegratorKind::ImplicitEuler {
             let changes = self
                 .state

@@ -17,6 +17,8 @@ const LARGE_FOR_A_FILE: f64 = 5.0;
 const LARGE_BY_THICKNESS: f64 = 5e3;
 /// A shell smaller than this [m] is probably in a larger unit.
 const SMALL: f64 = 1e-4;
+/// More than on any planet [m/s²].
+const LARGE_GRAVITY: f64 = 1e4;
 /// The theory of thin shells and the contact stencils want triangles much larger than the thickness.
 const THICKNESS_TO_EDGE: f64 = 0.1;
 
@@ -37,6 +39,11 @@ pub(super) fn find(model: &Model, spec: &SceneSpec) -> Vec<Warning> {
         }
         warnings.extend(check_size(shell, &path, &typed.mesh));
         warnings.extend(check_thickness(shell, &path));
+    }
+    if model.gravity.norm() > LARGE_GRAVITY {
+        let message = format!("a gravity of {:.2e} m/s² is unusual", model.gravity.norm());
+        let help = "on Earth it is 9.81 m/s²";
+        warnings.push(warning(message, "gravity".to_owned(), help));
     }
     if !model.has_supports() {
         warnings.extend(model.free_parts().iter().map(free_part));

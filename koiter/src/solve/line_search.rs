@@ -61,6 +61,9 @@ pub(super) fn line_search(
             report.limiter = energy.step_limiter();
         }
     }
+    if bound * line.reach >= 1.0 {
+        report.limiter = None;
+    }
     report.spend("collision_detection", start);
     let start = Instant::now();
     let taken = search(problem, q, line, bound * line.reach, report);

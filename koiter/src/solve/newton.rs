@@ -139,6 +139,9 @@ pub fn minimize(
         let taken = line_search(problem, q, &line, &mut report);
         pace.observe(report.last_step, taken.steps, taken.by_energy);
         report.last_fraction = taken.steps.min(1.0);
+        if moving && taken.steps >= 1.0 {
+            reach_targets(problem, q);
+        }
         report.remaining = step.remaining * (1.0 - report.last_fraction);
         // A step within the tolerance that the line search shortened was shortened by round-off or a contact's slack.
         let small = report.last_step < options.tolerance && step.remaining < options.tolerance;
@@ -148,6 +151,16 @@ pub fn minimize(
         }
     }
     Ok(report)
+}
+
+/// Sets prescribed unknowns to their targets, which a whole step reaches up to round-off.
+fn reach_targets(problem: &Problem<'_>, q: &mut [f64]) {
+    let solved = problem.layout.num_solved_dofs();
+    for (i, value) in q.iter_mut().enumerate() {
+        if i >= solved || problem.is_fixed[i] {
+            *value = problem.target[i];
+        }
+    }
 }
 
 struct NewtonStep {
@@ -184,29 +197,51 @@ fn newton_step(
         })
         .collect();
     let remaining = direction.iter().fold(0.0f64, |m, d| m.max(d.abs()));
+    let (gradient, mut rhs) = factorized_system(problem, workspace, q, &direction, pace, report)?;
+    let start = Instant::now();
+    workspace.factor.solve(&mut rhs);
+    direction[..solved].copy_from_slice(&rhs);
+    report.spend("linear_solve", start);
+    let slope = gradient.iter().zip(&direction).map(|(g, d)| g * d).sum();
+    Ok(NewtonStep {
+        direction,
+        slope,
+        remaining,
+    })
+}
+
+/// Assembles and factorises, with as much negative curvature as leaves the matrix positive definite; returns the gradient
+/// and the right-hand side.
+fn factorized_system(
+    problem: &Problem<'_>,
+    workspace: &mut LinearWorkspace,
+    q: &[f64],
+    prescribed: &[f64],
+    pace: &mut Pace,
+    report: &mut NewtonReport,
+) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
     let mut gradient = vec![0.0; q.len()];
-    let mut rhs;
     loop {
         gradient.fill(0.0);
         let projection = pace.projection();
-        rhs = assemble(
+        let rhs = assemble(
             problem,
             workspace,
             q,
-            &direction,
+            prescribed,
             projection,
             &mut gradient,
             report,
         )?;
         let start = Instant::now();
         let factorized = if projection == PsdProjection::Clamp {
-            workspace.factorize_shifted().map(|n| report.shifts += n)
+            (workspace.factorize_shifted(problem.is_fixed)).map(|n| report.shifts += n)
         } else {
             workspace.factorize()
         };
         report.spend("linear_solve", start);
         match factorized {
-            Ok(()) => break,
+            Ok(()) => return Ok((gradient, rhs)),
             Err(dof) if projection == PsdProjection::Clamp => {
                 return Err(SolveError::Indefinite {
                     unknown: problem.space.describe(dof),
@@ -218,16 +253,6 @@ fn newton_step(
             }
         }
     }
-    let start = Instant::now();
-    workspace.factor.solve(&mut rhs);
-    direction[..solved].copy_from_slice(&rhs);
-    report.spend("linear_solve", start);
-    let slope = gradient.iter().zip(&direction).map(|(g, d)| g * d).sum();
-    Ok(NewtonStep {
-        direction,
-        slope,
-        remaining,
-    })
 }
 
 /// Fills the matrix and returns the right-hand side, with prescribed unknowns eliminated.

@@ -18,6 +18,9 @@ const SLOW_RATIO: f64 = 0.3;
 /// A line search that takes less than this of a step, because the energy grows beyond, calls for more convexity.
 const CURVED: f64 = 0.6;
 
+/// A step of which this little is taken, whatever the reason, is wild: its matrix was barely definite.
+const WILD: f64 = 0.05;
+
 /// The line search looks at most this many Newton steps ahead: further reaches cost collision detection more than they
 /// save (4 and 16 take the same iterations on the scene `drape-n`).
 const LONGEST_REACH: f64 = 4.0;
@@ -85,7 +88,7 @@ impl Pace {
         }
         self.slow = ratio > SLOW_RATIO && (taken >= 0.5 || by_energy);
         self.wait = self.wait.saturating_sub(1);
-        if by_energy && taken < CURVED {
+        if (by_energy && taken < CURVED) || taken < WILD {
             self.level = self.level.saturating_sub(1);
         } else if self.slow && self.wait == 0 {
             self.level = (self.level + 1).min(KEPT.len() - 1);

@@ -169,11 +169,12 @@ impl LinearWorkspace {
         self.factor.factorize(matrix).map_err(|failure| failure.dof)
     }
 
-    /// Factorises the assembled matrix, with a diagonal shift if it must be; returns the number of shifts tried.
+    /// Factorises the assembled matrix, with a shift of the diagonal of free unknowns if it must be; returns the number of
+    /// shifts tried.
     ///
     /// # Errors
     /// The unknown whose pivot is not positive after the largest shift.
-    pub(super) fn factorize_shifted(&mut self) -> Result<usize, usize> {
+    pub(super) fn factorize_shifted(&mut self, is_fixed: &[bool]) -> Result<usize, usize> {
         let Err(mut failure) = self.factorize() else {
             return Ok(0);
         };
@@ -181,7 +182,8 @@ impl LinearWorkspace {
         let pattern = Arc::clone(&matrix.pattern);
         let mut applied = 0.0;
         for (attempt, shift) in SHIFTS.iter().enumerate() {
-            for &position in pattern.diagonal_positions() {
+            let diagonal = pattern.diagonal_positions().iter().zip(is_fixed);
+            for (&position, _) in diagonal.filter(|(_, fixed)| !**fixed) {
                 let value = &mut matrix.values[position as usize];
                 *value = *value / (1.0 + applied) * (1.0 + shift);
             }

@@ -155,15 +155,17 @@ impl FrontTree {
     pub(super) fn halve<'a>(&self, roots: &'a [u32]) -> (&'a [u32], &'a [u32]) {
         let half = self.flops(roots) / 2.0;
         let mut cut = 1;
-        while cut + 1 < roots.len() && self.flops(&roots[..=cut]) <= half {
+        let mut sum = self.flops(&roots[..2]);
+        while cut + 1 < roots.len() && sum <= half {
             cut += 1;
+            sum += self.flops(&roots[cut..=cut]);
         }
         roots.split_at(cut)
     }
 }
 
 /// Rows of the factor at and below the first unknown of each node.
-fn column_counts(order: &EliminationOrder, sizes: &[usize]) -> Vec<usize> {
+pub(super) fn column_counts(order: &EliminationOrder, sizes: &[usize]) -> Vec<usize> {
     const NONE: u32 = u32::MAX;
     let n = order.nodes.len();
     let parent = &order.parent;
@@ -453,6 +455,9 @@ impl<'a> Builder<'a> {
 
     fn block(&self, row: u32, column: u32, lie: Lie, place: usize) -> BlockPlace {
         let (row, column) = (NodeId(row), NodeId(column));
+        debug_assert!(
+            self.pattern.size(row).max(self.pattern.size(column)) <= usize::from(u8::MAX)
+        );
         BlockPlace {
             slot: (self.pattern.slot(row, column)).expect("neighbours are coupled"),
             stride: self.pattern.first_column_length(column),

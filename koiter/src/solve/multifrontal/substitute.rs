@@ -15,7 +15,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 
 use super::dense::{Scratch, join};
 use super::fronts::{Front, FrontTree};
-use super::upward::UpwardPass;
+use super::upward::{DEEPEST_TASK, UpwardPass};
 
 /// The factor of a matrix and the number of right-hand sides.
 #[derive(Clone, Copy)]
@@ -83,12 +83,12 @@ impl UpwardPass for Substitution<'_> {
 impl Substitution<'_> {
     /// Solves Lᵀ x = y in place.
     pub(super) fn backward(&self, y: &mut [f64]) {
-        self.subtrees(&self.tree.roots, &[], y);
+        self.subtrees(&self.tree.roots, &[], y, 0);
     }
 
-    /// Neighbouring subtrees of one parent, whose rows have the solution `above`.
-    fn subtrees(&self, roots: &[u32], above: &[f64], x: &mut [f64]) {
-        let small = self.tree.flops(roots) < self.task();
+    /// Neighbouring subtrees of one parent, `depth` fronts below a root, whose rows have the solution `above`.
+    fn subtrees(&self, roots: &[u32], above: &[f64], x: &mut [f64], depth: usize) {
+        let small = self.tree.flops(roots) < self.task() || depth > DEEPEST_TASK;
         match *roots {
             [] => {}
             [root] if small => self.sequential(root, above, x),
@@ -97,14 +97,14 @@ impl Substitution<'_> {
                 let (below, own) = x.split_at_mut(self.own(front).start - self.start(root));
                 let mut rows = vec![0.0; front.num_rows() * self.width];
                 self.solve_front(front, above, own, &mut rows);
-                self.subtrees(&front.children, &rows, below);
+                self.subtrees(&front.children, &rows, below, depth + 1);
             }
             _ => {
                 let (left, right) = self.tree.halve(roots);
                 let (left_x, right_x) = x.split_at_mut(self.start(right[0]) - self.start(left[0]));
                 join(
-                    || self.subtrees(left, above, left_x),
-                    || self.subtrees(right, above, right_x),
+                    || self.subtrees(left, above, left_x, depth),
+                    || self.subtrees(right, above, right_x, depth),
                 );
             }
         }

@@ -10,6 +10,10 @@ use std::sync::{Mutex, PoisonError};
 use super::dense::{Scratch, join};
 use super::fronts::{Front, FrontTree};
 
+/// Fronts further below a root than this are left to one thread, which needs no recursion: nested dissection makes trees
+/// of a few dozen levels, but an unlucky order can make a chain.
+pub(super) const DEEPEST_TASK: usize = 200;
+
 /// What is done at each front.
 pub(super) trait UpwardPass: Sync {
     /// The front's own part of the data; parts follow each other in the order of fronts.
@@ -37,16 +41,17 @@ pub(super) trait UpwardPass: Sync {
 pub(super) struct Buffers(Mutex<Vec<Vec<f64>>>);
 
 impl Buffers {
-    /// An empty buffer, of `size` entries' capacity if there is one.
+    /// An empty buffer: the smallest that holds `size` entries, or else the largest, which then grows. So there are never
+    /// more buffers than were in use at once.
     fn take(&self, size: usize) -> Vec<f64> {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let fitting = (kept.iter().enumerate())
-            .filter(|(_, buffer)| buffer.capacity() >= size)
-            .min_by_key(|(_, buffer)| buffer.capacity());
-        match fitting.map(|(index, _)| index) {
-            Some(index) => kept.swap_remove(index),
-            None => Vec::with_capacity(size),
-        }
+        let best = (0..kept.len()).min_by_key(|&k| {
+            let capacity = kept[k].capacity();
+            (capacity < size, capacity.abs_diff(size))
+        });
+        let mut buffer = best.map_or_else(Vec::new, |index| kept.swap_remove(index));
+        buffer.reserve_exact(size);
+        buffer
     }
 
     fn give_back(&self, mut buffer: Vec<f64>) {
@@ -71,7 +76,7 @@ pub(super) fn upward(
         pass,
         buffers,
     };
-    for update in walk.subtrees(&tree.roots, data)? {
+    for update in walk.subtrees(&tree.roots, data, 0)? {
         buffers.give_back(update);
     }
     Ok(())
@@ -89,20 +94,25 @@ impl<P: UpwardPass> Walk<'_, P> {
         self.pass.own(self.tree.first_front(root)).start
     }
 
-    /// Visits neighbouring subtrees; returns their updates, in order.
-    fn subtrees(&self, roots: &[u32], data: &mut [f64]) -> Result<Vec<Vec<f64>>, usize> {
-        let small = self.tree.flops(roots) < self.pass.task();
+    /// Visits neighbouring subtrees, `depth` fronts below a root; returns their updates, in order.
+    fn subtrees(
+        &self,
+        roots: &[u32],
+        data: &mut [f64],
+        depth: usize,
+    ) -> Result<Vec<Vec<f64>>, usize> {
+        let small = self.tree.flops(roots) < self.pass.task() || depth > DEEPEST_TASK;
         match *roots {
             [] => Ok(Vec::new()),
             [root] if small => Ok(vec![self.sequential(root, data)?]),
-            [root] => Ok(vec![self.parallel(root, data)?]),
+            [root] => Ok(vec![self.parallel(root, data, depth)?]),
             _ => {
                 let (left, right) = self.tree.halve(roots);
                 let middle = self.start(right[0]) - self.start(left[0]);
                 let (left_data, right_data) = data.split_at_mut(middle);
                 let (a, b) = join(
-                    || self.subtrees(left, left_data),
-                    || self.subtrees(right, right_data),
+                    || self.subtrees(left, left_data, depth),
+                    || self.subtrees(right, right_data, depth),
                 );
                 let mut updates = a?;
                 updates.extend(b?);
@@ -112,10 +122,10 @@ impl<P: UpwardPass> Walk<'_, P> {
     }
 
     /// A large subtree: its children's subtrees in parallel, then its root.
-    fn parallel(&self, root: u32, data: &mut [f64]) -> Result<Vec<f64>, usize> {
+    fn parallel(&self, root: u32, data: &mut [f64], depth: usize) -> Result<Vec<f64>, usize> {
         let front = self.tree.front(root);
         let (below, own) = data.split_at_mut(self.pass.own(front).start - self.start(root));
-        let updates = self.subtrees(&front.children, below)?;
+        let updates = self.subtrees(&front.children, below, depth + 1)?;
         let children = (front.children.iter().zip(&updates))
             .map(|(&child, update)| (self.tree.front(child), update.as_slice()));
         let mut update = self.buffers.take(self.pass.update_size(front));
