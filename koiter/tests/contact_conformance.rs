@@ -174,3 +174,26 @@ fn inertia_and_gravity_conform() {
     )
     .unwrap();
 }
+
+#[test]
+fn the_barrier_is_stiffened_by_a_small_gap_that_shrinks_and_not_by_one_that_opens() {
+    let (mut contact, _, q) = scene(0.0);
+    contact.prepare(&q);
+    let gap = contact.statistics().min_gap;
+    let start = contact.kappa();
+    // The lower sheet is nearest to the floor; raised this far the floor leaves a gap below 2 % of d̂, 1.44e-3 m.
+    let raised = |left: f64| {
+        let mut q = q.clone();
+        q[29] += gap - left;
+        q
+    };
+    for step in 1..6 {
+        let q = raised(1e-3 + 5e-5 * f64::from(step));
+        contact.prepare(&q);
+        contact.begin_iteration(&q);
+        assert!(contact.statistics().min_gap < 1.44e-3);
+    }
+    assert_eq!(contact.kappa(), start);
+    contact.begin_iteration(&raised(1e-3));
+    assert_eq!(contact.kappa(), 2.0 * start);
+}

@@ -1,6 +1,7 @@
 //! The linear system of an implicit step with BAC: our factorisation beside that of the crate faer.
 
-use koiter::solve::{LinearSolver, nested_dissection};
+use koiter::assembly::SymmetricMatrix;
+use koiter::solve::{LinearSolver, NodeOrdering, nested_dissection};
 
 use super::sheet::Sheet;
 use super::table::Table;
@@ -32,45 +33,66 @@ pub(super) fn bench(options: &SizeArguments) -> Result<Table, Failure> {
         let mut ordering = None;
         let ordering_seconds = fastest(1, || ordering = Some(nested_dissection(&matrix.pattern)));
         let ordering = ordering.expect("it was just made");
-        let exact: Vec<f64> = (0..unknowns).map(|i| (i as f64 * 0.7).sin()).collect();
-        let rhs = matrix.multiply(&exact);
         for (name, solver) in [
             ("multifrontal", LinearSolver::Multifrontal),
             ("faer", LinearSolver::Supernodal),
         ] {
             for threads in thread_counts() {
-                let row = on_threads(threads, || {
-                    let mut factor = solver.create();
-                    let analysis = fastest(1, || factor.analyze(&matrix.pattern, &ordering));
-                    let mut result = Ok(());
-                    let numeric = fastest(options.repeats, || result = factor.factorize(matrix));
-                    let mut x = rhs.clone();
-                    let solve = fastest(options.repeats, || {
-                        x.copy_from_slice(&rhs);
-                        factor.solve(&mut x);
-                    });
-                    result.map(|()| (analysis, numeric, solve, factor.factor_entries(), x))
-                })?;
-                let (analysis, numeric, solve, entries, x) =
-                    row.map_err(|error| Failure::run(error.to_string()))?;
-                let back = matrix.multiply(&x);
-                let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|a| a * a).sum::<f64>().sqrt();
-                let residual = norm(&mut back.iter().zip(&rhs).map(|(a, b)| a - b))
-                    / norm(&mut rhs.iter().copied());
+                let run = on_threads(threads, || measure(solver, matrix, &ordering, options))??;
                 table.push([
                     num_faces.into(),
                     unknowns.into(),
                     name.into(),
                     threads.into(),
                     ordering_seconds.into(),
-                    analysis.into(),
-                    numeric.into(),
-                    solve.into(),
-                    entries.into(),
-                    residual.log10().into(),
+                    run.analysis.into(),
+                    run.factor.into(),
+                    run.solve.into(),
+                    run.entries.into(),
+                    run.residual.log10().into(),
                 ]);
             }
         }
     }
     Ok(table)
+}
+
+/// Seconds, and how well it solved.
+struct Measured {
+    analysis: f64,
+    factor: f64,
+    solve: f64,
+    entries: usize,
+    residual: f64,
+}
+
+fn measure(
+    solver: LinearSolver,
+    matrix: &SymmetricMatrix,
+    ordering: &NodeOrdering,
+    options: &SizeArguments,
+) -> Result<Measured, Failure> {
+    let unknowns = matrix.pattern.num_rows();
+    let exact: Vec<f64> = (0..unknowns).map(|i| (i as f64 * 0.7).sin()).collect();
+    let rhs = matrix.multiply(&exact);
+    let mut solver = solver.create();
+    let analysis = fastest(1, || solver.analyze(&matrix.pattern, ordering));
+    let mut result = Ok(());
+    let factor = fastest(options.repeats, || result = solver.factorize(matrix));
+    result.map_err(|error| Failure::run(error.to_string()))?;
+    let mut x = rhs.clone();
+    let solve = fastest(options.repeats, || {
+        x.copy_from_slice(&rhs);
+        solver.solve(&mut x);
+    });
+    let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|a| a * a).sum::<f64>().sqrt();
+    let back = matrix.multiply(&x);
+    let error = norm(&mut back.iter().zip(&rhs).map(|(a, b)| a - b));
+    Ok(Measured {
+        analysis,
+        factor,
+        solve,
+        entries: solver.factor_entries(),
+        residual: error / norm(&mut rhs.iter().copied()),
+    })
 }

@@ -7,7 +7,8 @@
 
 use robust::{Coord3D, orient3d};
 
-use super::broad_phase::{Aabb, BoxTree};
+use super::boxes::Aabb;
+use super::broad_phase::BoxTree;
 use crate::Vec3;
 
 /// An edge that crosses a face.

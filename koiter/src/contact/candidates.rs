@@ -1,6 +1,7 @@
 //! Pairs that may come near each other, found once for a whole line search.
 
-use super::broad_phase::{Aabb, BoxTree};
+use super::boxes::Aabb;
+use super::broad_phase::BoxTree;
 use super::collision_mesh::CollisionMesh;
 use super::pair::{Pair, PairKind};
 use crate::Vec3;

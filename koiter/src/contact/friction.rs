@@ -10,6 +10,8 @@
 
 use nalgebra::Matrix3;
 
+use super::active::Contact;
+use super::pair::{PairKind, mollify};
 use crate::Vec3;
 use crate::assembly::{
     Dof, DofLayout, Energy, HessianBuilder, PatternBuilder, PsdProjection, ordered_sum,
@@ -84,6 +86,50 @@ impl Friction {
             Matrix3::zeros()
         };
         (plane * ratio + along * (second - ratio)) * contact.limit
+    }
+}
+
+impl Contact {
+    /// Normal forces and tangents at `q`, that of the last refresh, as the friction of the coming step.
+    pub fn lag(&self, q: &[f64], friction: &mut Friction) {
+        let coefficient = |a: f64, b: f64| (a * b).sqrt();
+        let of_body = |v: u32| self.mesh.bodies[self.mesh.body[v as usize] as usize].friction;
+        friction.contacts.clear();
+        for pair in &self.active {
+            let active = self.activate(pair, q);
+            let other = if pair.kind == PairKind::VertexFace {
+                1
+            } else {
+                2
+            };
+            let mu = coefficient(of_body(pair.vertices[0]), of_body(pair.vertices[other]));
+            let distance = active.closest.distance_squared.sqrt();
+            let slope = active.barrier.derivatives(active.closest.distance_squared)[1];
+            let m = mollify(&active.positions, active.threshold);
+            let force = -2.0 * self.kappa * active.area * m * slope * distance;
+            if mu * force > 0.0 {
+                friction.contacts.push(FrictionContact {
+                    points: pair.vertices.map(|v| self.mesh.vertices[v as usize]),
+                    weights: active.closest.weights,
+                    normal: active.closest.separation / distance,
+                    limit: mu * force,
+                });
+            }
+        }
+        for near in &self.active_planes {
+            let plane = &self.planes[near.plane];
+            let limit = coefficient(of_body(near.vertex), plane.friction)
+                * -self.plane_derivatives(near)[0];
+            if limit > 0.0 {
+                let vertex = self.mesh.vertices[near.vertex as usize];
+                friction.contacts.push(FrictionContact {
+                    points: [vertex, plane.point, plane.point, plane.point],
+                    weights: [1.0, -1.0, 0.0, 0.0],
+                    normal: plane.normal,
+                    limit,
+                });
+            }
+        }
     }
 }
 

@@ -5,8 +5,10 @@
 //! is left. Pairs are found once a line search (`broad_phase`), bound the step (`ccd`), and push (`barrier`).
 //! Reference: Li et al., "Incremental Potential Contact" (2020); Li, Kaufman, Jiang, "Codimensional IPC" (2021).
 
+mod active;
 mod audit;
 mod barrier;
+mod boxes;
 mod broad_phase;
 mod candidates;
 mod ccd;
@@ -15,14 +17,17 @@ mod energy;
 mod friction;
 mod pair;
 mod plane;
+mod search;
 mod start;
 
+pub use active::{Contact, ContactStatistics};
 pub use audit::{Intersection, intersections};
 pub use barrier::LogBarrier;
-pub use broad_phase::{Aabb, BoxTree};
+pub use boxes::Aabb;
+pub use broad_phase::BoxTree;
 pub use ccd::{Approach, additive_ccd};
 pub use collision_mesh::{CollisionBody, CollisionMesh};
-pub use energy::{Contact, ContactStatistics};
+
 pub use friction::Friction;
 pub use pair::{Pair, PairKind};
 pub use plane::CollisionPlane;

@@ -1,9 +1,9 @@
 //! What touches or intersects in a configuration, in terms a person can act on.
 
+use super::active::Contact;
 use super::audit::Intersection;
-use super::broad_phase::Aabb;
+use super::boxes::Aabb;
 use super::collision_mesh::CollisionMesh;
-use super::energy::Contact;
 use super::pair::{Pair, PairKind};
 use crate::Vec3;
 
