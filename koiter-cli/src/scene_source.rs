@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use koiter::io::read::{MeshFormat, RawMesh, ReadError};
-use koiter::io::read_mesh;
+use koiter::io::{MAX_SCENE_BYTES, read_bounded, read_mesh};
 use koiter::mesh::{MeshError, Surface, SurfaceOptions};
 use koiter::scene::{
     Document, MeshSource, Scene, SceneError, SceneErrorKind, SceneFile, UnreadableMesh, nearest,
@@ -152,7 +152,7 @@ fn find(argument: &str) -> Result<Found, Failure> {
 }
 
 fn read(path: &Path) -> Result<Found, Failure> {
-    let bytes = std::fs::read(path).map_err(|error| {
+    let bytes = read_bounded(path, MAX_SCENE_BYTES).map_err(|error| {
         Failure::input(format!("cannot read the scene {}: {error}", path.display()))
     })?;
     let text = String::from_utf8(bytes).map_err(|error| {
@@ -236,7 +236,9 @@ fn shipped_mesh(shipped: &Shipped, file: &str) -> Result<RawMesh, UnreadableMesh
 
 fn unreadable(error: ReadError) -> UnreadableMesh {
     let help = match &error {
-        ReadError::Io { .. } => Some("file names are relative to the scene's folder"),
+        ReadError::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
+            Some("file names are relative to the scene's folder")
+        }
         ReadError::Mesh {
             source: MeshError::InconsistentOrientation { .. },
             ..

@@ -110,6 +110,36 @@ fn broken_scene_files_are_refused_in_one_message() {
     );
 }
 
+#[cfg(unix)]
+#[test]
+fn devices_pipes_and_folders_are_no_scenes_and_no_meshes() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let made = std::process::Command::new("mkfifo")
+        .arg(at("pipe"))
+        .status();
+    assert!(made.unwrap().success());
+    std::os::unix::fs::symlink("/dev/zero", at("link")).unwrap();
+    std::fs::create_dir_all(at("nested/scene.toml")).unwrap();
+    for path in ["/dev/zero", &at("pipe"), &at("link"), &at("nested")] {
+        assert_refused(path, &[], &["cannot read the scene", "not a regular file"]);
+    }
+    let grid = "mesh.grid = { size = [1.0, 1.0], cells = [4, 4] }";
+    for mesh in ["/dev/zero", "pipe", "link", "nested"] {
+        let text = SCENE.replace(grid, &format!("mesh.file = \"{mesh}\""));
+        let scene = write_scene(folder.path(), &text);
+        assert_refused(
+            &scene,
+            &[],
+            &["scene.toml:7:13]", mesh, "not a regular file"],
+        );
+    }
+    // Long, but a hole: nothing is read.
+    let file = std::fs::File::create(at("long.toml")).unwrap();
+    file.set_len(65 << 20).unwrap();
+    assert_refused(&at("long.toml"), &[], &["larger than 64 MiB"]);
+}
+
 #[test]
 fn implausible_numbers_are_warned_about_on_standard_error() {
     let folder = tempfile::tempdir().unwrap();

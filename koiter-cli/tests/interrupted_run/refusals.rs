@@ -139,6 +139,51 @@ fn damaged_checkpoints_and_other_versions_are_refused() {
 }
 
 #[test]
+fn a_damaged_frame_among_those_to_keep_is_refused_by_name() {
+    let bench = begun();
+    let path = bench.path("out/frames/00001.bin");
+    let good = fs::read(&path).unwrap();
+    let mut flipped = good.clone();
+    flipped[good.len() / 2] ^= 4;
+    for bad in [&flipped[..], &good[..good.len() - 100], b""] {
+        fs::write(&path, bad).unwrap();
+        let text = refused(&bench, &["--resume", "--until", "0.1"]);
+        assert!(
+            text.contains("00001.bin is broken") && text.contains("--restart"),
+            "{text}"
+        );
+    }
+    fs::write(&path, &good).unwrap();
+    bench.finish("out", &["--resume", "--until", "0.1"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn devices_in_the_place_of_files_are_refused() {
+    let bench = begun();
+    for (name, words) in [
+        ("manifest.json", "manifest.json cannot be one"),
+        ("topology.bin", "topology.bin is broken"),
+        ("checkpoint.bin", "checkpoint.bin is broken"),
+        ("frames/00000.bin", "00000.bin is broken"),
+        ("stats.jsonl", "stats.jsonl is broken"),
+        ("probes.csv", "probes.csv is broken"),
+    ] {
+        let (path, aside) = (bench.path("out").join(name), bench.path("aside"));
+        fs::rename(&path, &aside).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
+        let output = bench.run("out", &["--resume", "--until", "0.1"]);
+        let text = stderr(&output);
+        assert_eq!(status(&output), 2, "{text}");
+        for words in [words, "not a regular file"] {
+            assert!(text.contains(words), "'{words}' is not in: {text}");
+        }
+        fs::rename(&aside, &path).unwrap();
+    }
+    bench.finish("out", &["--resume", "--until", "0.1"]);
+}
+
+#[test]
 fn an_interrupted_run_of_the_same_scene_is_replaced_only_when_asked() {
     let bench = begun();
     let summary = bench.path("out/summary.json");

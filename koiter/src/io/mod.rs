@@ -4,6 +4,7 @@
 //! without a file system, and no parser panics, hangs or reserves memory on the word of a header.
 
 mod atomic_file;
+mod bounded_read;
 mod bytes;
 mod checksum;
 pub mod read;
@@ -11,6 +12,7 @@ pub mod result;
 pub mod write;
 
 pub use atomic_file::write_atomically;
+pub use bounded_read::{MAX_DATA_BYTES, MAX_SCENE_BYTES, read_bounded};
 pub use checksum::crc32;
 pub use read::{RawMesh, ReadError, read_mesh};
 pub use result::Checkpoint;

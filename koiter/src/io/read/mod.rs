@@ -16,10 +16,10 @@ pub use off::parse_off;
 pub use ply::parse_ply;
 pub use stl::parse_stl;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::Vec3;
+use crate::io::{MAX_DATA_BYTES, read_bounded};
 use crate::mesh::{Surface, SurfaceOptions};
 
 /// What a mesh file holds, before it is checked to be a mesh.
@@ -90,10 +90,10 @@ impl MeshFormat {
 /// Reads a mesh file.
 ///
 /// # Errors
-/// A refusal of the system, a format that is not known, a fault in the file.
+/// Not a regular file, a refusal of the system, a format that is not known, a fault in the file.
 pub fn read_mesh(path: &Path) -> Result<RawMesh, ReadError> {
     let in_file = || path.to_path_buf();
-    let bytes = fs::read(path).map_err(|source| ReadError::Io {
+    let bytes = read_bounded(path, MAX_DATA_BYTES).map_err(|source| ReadError::Io {
         path: in_file(),
         source,
     })?;

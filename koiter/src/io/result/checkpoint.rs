@@ -13,12 +13,10 @@
 //!
 //! Numbers are little-endian; a text is its length as u32 and its bytes, a list its length as u64 and its items.
 
-use std::fs;
-use std::io;
 use std::path::Path;
 
 use super::CHECKPOINT;
-use super::error::{ResultError, while_trying};
+use super::error::{ResultError, read_if_there};
 use super::topology_file::checked_body;
 use crate::integrate::State;
 use crate::io::bytes::{ByteReader, Endian};
@@ -92,13 +90,12 @@ impl Checkpoint {
     /// A file that is damaged or of another format, a refusal of the system.
     pub fn read(folder: &Path) -> Result<Option<Self>, ResultError> {
         let path = folder.join(CHECKPOINT);
-        match fs::read(&path) {
-            Ok(bytes) => Self::from_bytes(&bytes)
-                .map(Some)
-                .map_err(|CheckpointError { reason }| ResultError::Broken { path, reason }),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(while_trying("read", &path)(error)),
-        }
+        let Some(bytes) = read_if_there(&path)? else {
+            return Ok(None);
+        };
+        Self::from_bytes(&bytes)
+            .map(Some)
+            .map_err(|CheckpointError { reason }| ResultError::Broken { path, reason })
     }
 
     /// Reads a checkpoint from the bytes of its file, whatever they are.

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::io::{MAX_DATA_BYTES, read_bounded};
+
 /// Why a result folder could not be written or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -54,7 +56,7 @@ pub enum ResultError {
         supported: u32,
     },
     /// A file of the result is damaged.
-    #[error("{} is broken: {reason}; delete it, or run the scene again", path.display())]
+    #[error("{} is broken: {reason}; run the scene again", path.display())]
     Broken {
         /// The file.
         path: PathBuf,
@@ -98,5 +100,33 @@ pub(super) fn while_trying<'a>(
         action,
         path: path.to_path_buf(),
         source,
+    }
+}
+
+/// The bytes of a file of a result.
+///
+/// # Errors
+/// Broken, if it is none that a run can have written; a refusal of the system.
+pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, ResultError> {
+    read_bounded(path, MAX_DATA_BYTES).map_err(unreadable(path))
+}
+
+/// The same, or nothing where there is no such file.
+pub(super) fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, ResultError> {
+    match read_file(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(ResultError::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+/// A pipe, a device or a folder in the place of a file is damage, not a refusal of the system.
+pub(super) fn unreadable<'a>(path: &'a Path) -> impl FnOnce(io::Error) -> ResultError + 'a {
+    move |error| match error.kind() {
+        io::ErrorKind::InvalidInput | io::ErrorKind::FileTooLarge => ResultError::Broken {
+            path: path.to_path_buf(),
+            reason: error.to_string(),
+        },
+        _ => while_trying("read", path)(error),
     }
 }

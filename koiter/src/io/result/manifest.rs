@@ -1,6 +1,5 @@
 //! What a run was made of: `manifest.json`.
 
-use std::fs;
 use std::io;
 use std::ops::Range;
 use std::path::Path;
@@ -9,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::while_trying;
 use super::{MANIFEST, ResultError};
+use crate::io::{MAX_DATA_BYTES, read_bounded};
 
 /// The value of the key `format` by which a result folder is known.
 const FORMAT: &str = "koiter-result";
@@ -164,7 +164,7 @@ impl Manifest {
 
     pub(super) fn read(folder: &Path) -> Result<Self, ResultError> {
         let path = folder.join(MANIFEST);
-        match fs::read(&path) {
+        match read_bounded(&path, MAX_DATA_BYTES) {
             Ok(bytes) => Self::decode(folder, &bytes),
             Err(error)
                 if matches!(
@@ -179,6 +179,18 @@ impl Manifest {
                     "there is no such folder"
                 };
                 Err(not_a_result(folder, reason.to_string()))
+            }
+            // No run writes such a thing: the folder is not taken for a result, and nothing in it is replaced.
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    io::ErrorKind::InvalidInput | io::ErrorKind::FileTooLarge
+                ) =>
+            {
+                Err(not_a_result(
+                    folder,
+                    format!("its manifest.json cannot be one: {error}"),
+                ))
             }
             Err(error) => Err(while_trying("read", &path)(error)),
         }

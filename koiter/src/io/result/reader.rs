@@ -1,15 +1,16 @@
 //! Reading a result folder, also of a run that is still going on.
 
-use std::fs::{self, File};
-use std::io::{self, Read};
+use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::error::while_trying;
+use super::error::{read_file, read_if_there, unreadable, while_trying};
 use super::frame::HEADER_LENGTH;
 use super::{
     FRAMES, Frame, FrameInfo, Manifest, ResultError, STATS, SUMMARY, TOPOLOGY, decode_topology,
     frame_path,
 };
+use crate::io::bounded_read::open_regular;
 
 /// A result folder opened for reading; frames are read when asked for.
 #[derive(Clone, Debug)]
@@ -28,7 +29,7 @@ impl ResultReader {
     pub fn open(folder: &Path) -> Result<Self, ResultError> {
         let manifest = Manifest::read(folder)?;
         let path = folder.join(TOPOLOGY);
-        let bytes = fs::read(&path).map_err(while_trying("read", &path))?;
+        let bytes = read_file(&path)?;
         let broken = |reason| ResultError::Broken {
             path: path.clone(),
             reason,
@@ -85,7 +86,7 @@ impl ResultReader {
     /// No such frame, a broken file, a refusal of the system.
     pub fn frame(&self, index: usize) -> Result<Frame, ResultError> {
         let path = self.existing_frame(index)?;
-        let bytes = fs::read(&path).map_err(while_trying("read", &path))?;
+        let bytes = read_file(&path)?;
         let broken = |reason| ResultError::Broken {
             path: path.clone(),
             reason,
@@ -104,9 +105,9 @@ impl ResultReader {
     pub fn frame_info(&self, index: usize) -> Result<FrameInfo, ResultError> {
         let path = self.existing_frame(index)?;
         let mut bytes = Vec::with_capacity(HEADER_LENGTH);
-        File::open(&path)
+        open_regular(&path)
             .and_then(|file| file.take(HEADER_LENGTH as u64).read_to_end(&mut bytes))
-            .map_err(while_trying("read", &path))?;
+            .map_err(unreadable(&path))?;
         Frame::decode_info(&bytes).map_err(|reason| ResultError::Broken { path, reason })
     }
 
@@ -163,14 +164,6 @@ pub fn decode_stats(bytes: &[u8]) -> Result<Vec<serde_json::Value>, String> {
                 .map_err(|error| format!("line {} is not JSON ({error})", index + 1))
         })
         .collect()
-}
-
-fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, ResultError> {
-    match fs::read(path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(while_trying("read", path)(error)),
-    }
 }
 
 /// Number of frame files; they must be numbered from 0 without gap.

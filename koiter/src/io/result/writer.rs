@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::error::while_trying;
+use super::error::{read_if_there, while_trying};
 use super::{
     CHECKPOINT, Checkpoint, FRAMES, Frame, MANIFEST, Manifest, ResultError, ResultReader, STATS,
     SUMMARY, TOPOLOGY, frame_path, topology_file,
@@ -75,7 +75,8 @@ impl ResultWriter {
     /// drops the rest.
     ///
     /// # Errors
-    /// Not a result, or one of other parts; fewer frames or lines than are to be kept; a refusal of the system.
+    /// Not a result, or one of other parts; fewer frames or lines than are to be kept, or a damaged frame among them; a
+    /// refusal of the system.
     pub fn resume(
         folder: &Path,
         manifest: &Manifest,
@@ -98,7 +99,9 @@ impl ResultWriter {
                 path: folder.to_path_buf(),
             });
         }
-        // What may be refused comes before what is deleted.
+        // What may be refused comes before what is deleted. Every kept frame is read: one that a later `render` stumbles
+        // over would be found when the hours are spent.
+        (0..frames).try_for_each(|index| reader.frame(index).map(drop))?;
         keep_lines(&folder.join(STATS), stats)?;
         for index in (frames..reader.len()).rev() {
             let path = frame_path(folder, index);
@@ -278,10 +281,7 @@ fn remove_if_there(path: &Path) -> Result<(), ResultError> {
 /// # Errors
 /// Fewer lines, a refusal of the system.
 pub fn keep_lines(path: &Path, count: usize) -> Result<(), ResultError> {
-    let bytes = match fs::read(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
-        read => read.map_err(while_trying("read", path))?,
-    };
+    let bytes = read_if_there(path)?.unwrap_or_default();
     let mut lines = bytes
         .split_inclusive(|&byte| byte == b'\n')
         .filter(|line| line.ends_with(b"\n"));
