@@ -238,24 +238,30 @@ fn meshes_that_are_no_sheets_are_refused_with_their_line() {
             "line 7: the z coordinate 'inf' is not a finite number",
         ),
         ("f 1 2 9\n", "line 7: the face uses vertex 9"),
-        ("f 3 2 1\n", "line 5: faces [0, 2] have the same vertices"),
+        (
+            "f 3 2 1\n",
+            "line 5: faces [1, 3] have the same vertices [1, 2, 3]",
+        ),
         (
             "v 2 0 0\nf 5 2 3\n",
-            "line 5: faces [0, 2] both traverse edge",
+            "line 5: faces [1, 3] both traverse edge [2, 3]",
         ),
         (
             "v 0 0 1\nf 3 1 5\n",
-            "line 5: edge [0, 2] belongs to 3 faces",
+            "line 5: edge [1, 3] belongs to 3 faces",
         ),
         (
             "v 2 2 0\nv 2 3 0\nf 3 5 6\n",
-            "line 5: vertex 2 joins separate fans",
+            "line 5: vertex 3 joins separate fans",
         ),
         (
             "v 2 0 0\nf 1 5 2\n",
-            "line 8: face 2 [0, 4, 1] is degenerate",
+            "line 8: face 3 [1, 5, 2] is degenerate",
         ),
-        ("f 2 2 3\n", "line 7: face 2 uses vertex 1 more than once"),
+        (
+            "f 2 2 3\n",
+            "line 7: face 3 uses vertex 2 more than once: [2, 2, 3]",
+        ),
         ("f 1 2\n", "line 7: the face has 2 corners"),
     ];
     for (more, words) in cases {

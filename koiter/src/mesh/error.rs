@@ -113,7 +113,7 @@ pub enum MeshError {
     )]
     NotFinite {
         /// Vertex index.
-        vertex: usize,
+        vertex: u32,
         /// Its position [m].
         position: [f64; 3],
     },
@@ -162,29 +162,69 @@ impl MeshError {
 
     /// The same error about vertices that had other numbers before: `old_index[new]`.
     pub(super) fn renumbered(mut self, old_index: &[u32]) -> Self {
-        let restore = |v: &mut u32| *v = old_index[*v as usize];
-        match &mut self {
+        self.for_each_number(|v| *v = old_index[*v as usize], |_| {});
+        self
+    }
+
+    /// The same error for a reader who counts vertices and faces from `first` instead of 0; `None` if it names none, or
+    /// says itself how it counts.
+    pub(crate) fn counted_from(&self, first: u32) -> Option<Self> {
+        let (mut error, mut names_any) = (self.clone(), false);
+        error.for_each_number(
+            |vertex| {
+                names_any = true;
+                *vertex += first;
+            },
+            |face| *face += first as usize,
+        );
+        names_any.then_some(error)
+    }
+
+    /// Goes through the numbers of vertices and faces in the message.
+    fn for_each_number(
+        &mut self,
+        mut change_vertex: impl FnMut(&mut u32),
+        change_face: impl FnMut(&mut usize),
+    ) {
+        match self {
             Self::RepeatedIndex {
-                vertex, corners, ..
+                face,
+                vertex,
+                corners,
             } => {
-                restore(vertex);
-                corners.iter_mut().for_each(restore);
+                change_vertex(vertex);
+                corners.iter_mut().for_each(change_vertex);
+                std::iter::once(face).for_each(change_face);
             }
-            Self::DuplicateFace { vertices, .. } => vertices.iter_mut().for_each(restore),
-            Self::NonManifoldEdge { edge, .. }
-            | Self::InconsistentOrientation { edge, .. }
-            | Self::NotOrientable { edge, .. } => edge.iter_mut().for_each(restore),
-            Self::NonManifoldVertex { vertex, .. } => restore(vertex),
-            Self::DegenerateFace { corners, .. } => corners.iter_mut().for_each(restore),
-            Self::NotFinite { vertex, .. } => *vertex = old_index[*vertex] as usize,
-            // The others name no vertex, or are found before vertices are renumbered.
+            Self::DuplicateFace { faces, vertices } => {
+                vertices.iter_mut().for_each(change_vertex);
+                faces.iter_mut().for_each(change_face);
+            }
+            Self::NonManifoldEdge { edge, faces } => {
+                edge.iter_mut().for_each(change_vertex);
+                faces.iter_mut().for_each(change_face);
+            }
+            Self::InconsistentOrientation { edge, faces } | Self::NotOrientable { edge, faces } => {
+                edge.iter_mut().for_each(change_vertex);
+                faces.iter_mut().for_each(change_face);
+            }
+            Self::NonManifoldVertex { vertex, faces } => {
+                change_vertex(vertex);
+                faces.iter_mut().for_each(change_face);
+            }
+            Self::DegenerateFace { face, corners, .. } => {
+                corners.iter_mut().for_each(change_vertex);
+                std::iter::once(face).for_each(change_face);
+            }
+            Self::NotFinite { vertex, .. } | Self::Unreferenced { first: vertex, .. } => {
+                change_vertex(vertex);
+            }
+            // They name no vertex, or say how they count.
             Self::Empty
             | Self::TooLarge { .. }
             | Self::IndexOutOfRange { .. }
-            | Self::Unreferenced { .. }
             | Self::PositionCount { .. } => {}
         }
-        self
     }
 }
 

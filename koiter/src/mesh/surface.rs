@@ -181,7 +181,7 @@ impl Surface {
         for (vertex, x) in self.positions.iter().enumerate() {
             if !x.iter().all(|value| value.is_finite()) {
                 return Err(MeshError::NotFinite {
-                    vertex,
+                    vertex: vertex as u32,
                     position: (*x).into(),
                 });
             }

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::Numbering;
 use crate::mesh::MeshError;
 
 /// A place in a file.
@@ -91,15 +92,33 @@ pub enum ReadError {
         source: ParseError,
     },
     /// The file is well-formed, its mesh is not usable.
-    #[error("{}{source}", prefix(path, *location))]
+    #[error("{}{}", prefix(path, *location), counted(source, *numbering))]
     Mesh {
         /// The file.
         path: PathBuf,
         /// Where the face at fault stands, if that is known.
         location: Location,
-        /// The fault; vertices and faces are numbered from 0, faces after polygons were split.
+        /// How the message counts vertices and faces.
+        numbering: Numbering,
+        /// The fault; here vertices and faces are numbered from 0, faces after polygons were split.
         source: MeshError,
     },
+}
+
+/// A fault of a mesh in the numbers of its file, and how they count.
+fn counted(error: &MeshError, numbering: Numbering) -> String {
+    let (first, convention) = match numbering {
+        Numbering::FromZero => (0, "vertices and triangles are counted from 0"),
+        Numbering::FromOne => (1, "vertices and triangles are counted from 1"),
+        Numbering::OfDistinctPoints => (
+            0,
+            "vertices and triangles are counted from 0, equal points as one",
+        ),
+    };
+    match error.counted_from(first) {
+        Some(error) => format!("{error} ({convention})"),
+        None => error.to_string(),
+    }
 }
 
 /// "file, line 3: ", or what is known of it.

@@ -33,6 +33,20 @@ pub struct RawMesh {
     pub faces: Vec<[u32; 3]>,
     /// The line each triangle comes from, counted from 1; empty for binary files.
     pub face_lines: Vec<usize>,
+    /// How people who look into the file count; only for error messages.
+    pub numbering: Numbering,
+}
+
+/// How vertices and faces of a file are counted where people are told of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Numbering {
+    /// From 0, as in PLY and OFF.
+    #[default]
+    FromZero,
+    /// From 1, as in OBJ.
+    FromOne,
+    /// From 0, in the order of first appearance, as equal points became one (STL).
+    OfDistinctPoints,
 }
 
 /// A mesh file format.
@@ -124,6 +138,7 @@ impl RawMesh {
             ReadError::Mesh {
                 path: self.path,
                 location,
+                numbering: self.numbering,
                 source,
             }
         })

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::text::{check_corner, check_corner_count, parse_position, shortened};
-use super::{ParseError, RawMesh};
+use super::{Numbering, ParseError, RawMesh};
 
 /// Parses an OBJ file.
 ///
@@ -15,7 +15,10 @@ use super::{ParseError, RawMesh};
 pub fn parse_obj(bytes: &[u8]) -> Result<RawMesh, ParseError> {
     // Names may be in any encoding; what we read is ASCII.
     let text = String::from_utf8_lossy(bytes);
-    let mut mesh = RawMesh::default();
+    let mut mesh = RawMesh {
+        numbering: Numbering::FromOne,
+        ..RawMesh::default()
+    };
     let mut corners = Vec::new();
     for (line, content) in logical_lines(&text) {
         let mut words = content.split_whitespace();

@@ -1,7 +1,7 @@
 //! STL, text and binary. Every facet brings its own vertices; those with exactly equal coordinates become one.
 
 use super::text::{content_lines, parse_position};
-use super::{ParseError, RawMesh};
+use super::{Numbering, ParseError, RawMesh};
 use crate::Vec3;
 use crate::io::bytes::{ByteReader, Endian};
 use crate::mesh::repair;
@@ -52,6 +52,7 @@ pub fn parse_stl(bytes: &[u8]) -> Result<RawMesh, ParseError> {
         positions,
         faces,
         face_lines: lines,
+        numbering: Numbering::OfDistinctPoints,
         ..RawMesh::default()
     })
 }

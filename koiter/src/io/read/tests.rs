@@ -127,14 +127,14 @@ fn errors_carry_file_line_and_fault() {
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\n";
     let error = read(&format!("{square}f 1 4 3\n")).unwrap_err().to_string();
     assert!(
-        error.contains("sheet.obj, line 5: faces [0, 1] both traverse edge [0, 2]"),
+        error.contains("sheet.obj, line 5: faces [1, 2] both traverse edge [1, 3]"),
         "{error}"
     );
     let error = read(&format!("{square}f 1 3 4\nf 1 1 3\n"))
         .unwrap_err()
         .to_string();
     assert!(
-        error.contains("sheet.obj, line 7: face 2 uses vertex 0 more than once"),
+        error.contains("sheet.obj, line 7: face 3 uses vertex 1 more than once: [1, 1, 3]"),
         "{error}"
     );
     assert_eq!(
@@ -161,6 +161,36 @@ fn errors_carry_file_line_and_fault() {
         .unwrap_err()
         .to_string();
     assert!(error.contains("no mesh format known here"), "{error}");
+}
+
+#[test]
+fn faults_are_told_in_the_numbers_of_the_file() {
+    let problem = |format: MeshFormat, text: &str| {
+        let mesh = format.parse(text.as_bytes()).unwrap();
+        let error = mesh.into_surface(SurfaceOptions::default()).unwrap_err();
+        error.to_string()
+    };
+    // The first vertex is in no face and dropped: the others keep their numbers in what is said of them.
+    let points = "v 9 9 9\nv 0 0 0\nv 1 0 0\n";
+    assert_eq!(
+        problem(MeshFormat::Obj, &format!("{points}f 2 3 3\n")),
+        "line 4: face 1 uses vertex 3 more than once: [2, 3, 3]; remove the face \
+         (vertices and triangles are counted from 1)"
+    );
+    assert_eq!(
+        problem(
+            MeshFormat::Off,
+            "OFF\n3 1 0\n9 9 9\n0 0 0\n1 0 0\n3 1 2 2\n"
+        ),
+        "line 6: face 0 uses vertex 2 more than once: [1, 2, 2]; remove the face \
+         (vertices and triangles are counted from 0)"
+    );
+    let stl = "solid s\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 0 0\nendfacet\n";
+    let text = problem(MeshFormat::Stl, stl);
+    assert!(
+        text.contains("vertex 1 more than once") && text.ends_with("equal points as one)"),
+        "{text}"
+    );
 }
 
 /// Steele, Lea and Flood (2014).
