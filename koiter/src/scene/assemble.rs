@@ -1,21 +1,14 @@
 //! From a checked model to energies, masses and contact.
 
-use nalgebra::Vector3;
-
 use super::clamps::Clamps;
-use super::model::{BendingModel, IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
+use super::elastic::{Elastic, director_shape, rest_surface};
+use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
 use crate::Vec3;
-use crate::assembly::{Assembled, Dof, DofLayout, Energy};
+use crate::assembly::{Assembled, Dof, DofLayout};
 use crate::contact::{CollisionBody, CollisionMesh, CollisionPlane, Contact, StartError};
-use crate::energy::bending::{
-    AngleProfile, DirectorShape, DiscreteShellsHinge, Identity, MidEdgeBending, Sine, Tangent,
-    bending_stencils,
-};
-use crate::energy::{Gravity, Membrane};
-use crate::integrate::{OffsetSurfaces, ShellPart, System, relax_directors};
-use crate::material::StVenantKirchhoff;
-use crate::mesh::Surface;
-use crate::rest::{RestError, rest_frames};
+use crate::energy::Gravity;
+use crate::integrate::{OffsetSurfaces, ShellPart, System};
+use crate::rest::RestError;
 use crate::solve::LinearWorkspace;
 
 /// Why a model cannot be simulated.
@@ -76,77 +69,13 @@ pub(super) struct Assembly {
 
 /// Builds energies, masses and contact, and refuses a start that touches.
 pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
-    let mut layout = DofLayout::new();
-    let vertices: Vec<Dof> = model
-        .shells
-        .iter()
-        .map(|s| layout.push_nodes(s.surface.mesh.num_vertices(), 3, true))
-        .collect();
-    let edges: Vec<Option<Dof>> = model
-        .shells
-        .iter()
-        .map(|s| {
-            director_shape(s.bending)
-                .1
-                .then(|| layout.push_nodes(s.surface.mesh.num_edges(), 1, true))
-        })
-        .collect();
-    let obstacles: Vec<(Dof, Vec<Vec3>)> = model
-        .obstacles
-        .iter()
-        .map(|o| {
-            let points = obstacle_points(o);
-            (layout.push_nodes(points.len(), 3, false), points)
-        })
-        .collect();
-    let mut q = vec![0.0; layout.num_dofs()];
-    let mut velocities = q.clone();
-    for (shell, first) in model.shells.iter().zip(&vertices) {
-        write_points(&mut q, *first, &shell.surface.positions);
-        write_points(&mut velocities, *first, &shell.velocities);
-    }
-    for (obstacle, (first, points)) in model.obstacles.iter().zip(&obstacles) {
-        let moved: Vec<Vec3> = points
-            .iter()
-            .map(|x| obstacle.motion.apply(*x, 0.0))
-            .collect();
-        write_points(&mut q, *first, &moved);
-    }
-    let mut elastic: Vec<Box<dyn Energy>> = Vec::new();
-    let mut masses = vec![0.0; layout.num_solved_dofs()];
-    let mut parts = Vec::new();
-    for ((shell, &first_vertex), &first_edge) in model.shells.iter().zip(&vertices).zip(&edges) {
-        let fail = |error| BuildError::Rest {
-            shell: shell.name.clone(),
-            error,
-        };
-        let mut part = shell_part(shell, first_vertex, first_edge).map_err(fail)?;
-        add_vertex_masses(&part, shell.density, &mut masses);
-        let material = StVenantKirchhoff::new(shell.youngs_modulus, shell.poissons_ratio);
-        let membrane = Membrane::new(
-            &part.mesh,
-            first_vertex,
-            part.frames.clone(),
-            shell.thickness,
-            material,
-        );
-        elastic.push(Box::new(Assembled::new(membrane, &layout)));
-        let bending = match shell.bending {
-            BendingModel::Bac => {
-                director_bending::<Tangent>(shell, &mut part, &layout, &mut q, &mut masses)
-            }
-            BendingModel::Dcs => {
-                director_bending::<Sine>(shell, &mut part, &layout, &mut q, &mut masses)
-            }
-            BendingModel::Dso => {
-                director_bending::<Identity>(shell, &mut part, &layout, &mut q, &mut masses)
-            }
-            BendingModel::DsTheta => Ok(Some(hinge_bending(shell, &part, &layout))),
-            BendingModel::None => Ok(None),
-        };
-        elastic.extend(bending.map_err(fail)?);
-        parts.push(part);
-    }
+    let unknowns = Unknowns::new(model);
+    let (mut q, velocities) = unknowns.start(model);
+    let Elastic {
+        energies,
+        masses,
+        parts,
+    } = Elastic::new(model, &unknowns, &mut q)?;
     let (clamps, clamped_edges) = Clamps::new(model, &parts, &q);
     let gravity = Gravity {
         masses: vertex_masses(&parts, &masses),
@@ -154,6 +83,12 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     };
     check_contact_reach(model)?;
     check_planes(model)?;
+    let Unknowns {
+        layout,
+        vertices,
+        obstacles,
+        ..
+    } = unknowns;
     let mut contact = build_contact(model, &vertices, &obstacles, &layout);
     if let Some(contact) = &mut contact {
         contact.check_start(&q)?;
@@ -161,7 +96,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     let system = System {
         clamps: Assembled::new(clamped_edges, &layout),
         layout,
-        elastic,
+        elastic: energies,
         gravity,
         masses,
         is_dynamic: model.integrator == IntegratorKind::ImplicitEuler,
@@ -180,62 +115,74 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     })
 }
 
-/// How directors are shown, and whether the model has them as unknowns.
-fn director_shape(bending: BendingModel) -> (DirectorShape, bool) {
-    match bending {
-        BendingModel::Bac => (DirectorShape::Tangent, true),
-        BendingModel::Dcs | BendingModel::Dso => (DirectorShape::Unit, true),
-        BendingModel::DsTheta | BendingModel::None => (DirectorShape::Bisector, false),
+/// Where the unknowns of every shell and the points of every obstacle stand in `q`.
+pub(super) struct Unknowns {
+    pub(super) layout: DofLayout,
+    /// First vertex unknown of each shell.
+    pub(super) vertices: Vec<Dof>,
+    /// First director angle of each shell whose bending model has them.
+    pub(super) edges: Vec<Option<Dof>>,
+    /// First unknown of each obstacle's points, and their positions at time 0.
+    obstacles: Vec<(Dof, Vec<Vec3>)>,
+}
+
+impl Unknowns {
+    /// All vertices, then all directors, then the obstacles, whose motion is prescribed.
+    fn new(model: &Model) -> Self {
+        let mut layout = DofLayout::new();
+        let vertices = model
+            .shells
+            .iter()
+            .map(|s| layout.push_nodes(s.surface.mesh.num_vertices(), 3, true))
+            .collect();
+        let edges = model
+            .shells
+            .iter()
+            .map(|s| {
+                director_shape(s.bending)
+                    .1
+                    .then(|| layout.push_nodes(s.surface.mesh.num_edges(), 1, true))
+            })
+            .collect();
+        let obstacles = model
+            .obstacles
+            .iter()
+            .map(|o| {
+                let points = obstacle_points(o);
+                (layout.push_nodes(points.len(), 3, false), points)
+            })
+            .collect();
+        Self {
+            layout,
+            vertices,
+            edges,
+            obstacles,
+        }
+    }
+
+    /// Positions and velocities at time 0; the directors are not known yet.
+    fn start(&self, model: &Model) -> (Vec<f64>, Vec<f64>) {
+        let mut q = vec![0.0; self.layout.num_dofs()];
+        let mut velocities = q.clone();
+        for (shell, first) in model.shells.iter().zip(&self.vertices) {
+            write_points(&mut q, *first, &shell.surface.positions);
+            write_points(&mut velocities, *first, &shell.velocities);
+        }
+        for (obstacle, (first, points)) in model.obstacles.iter().zip(&self.obstacles) {
+            let moved: Vec<Vec3> = points
+                .iter()
+                .map(|x| obstacle.motion.apply(*x, 0.0))
+                .collect();
+            write_points(&mut q, *first, &moved);
+        }
+        (q, velocities)
     }
 }
 
-fn write_points(q: &mut [f64], first: Dof, points: &[Vec3]) {
+pub(super) fn write_points(q: &mut [f64], first: Dof, points: &[Vec3]) {
     for (i, x) in points.iter().enumerate() {
         let start = first.0 as usize + 3 * i;
         q[start..start + 3].copy_from_slice(x.as_slice());
-    }
-}
-
-fn shell_part(
-    shell: &Shell,
-    first_vertex: Dof,
-    first_edge: Option<Dof>,
-) -> Result<ShellPart, RestError> {
-    let rest = rest_surface(shell);
-    Ok(ShellPart {
-        name: shell.name.clone(),
-        mesh: shell.surface.mesh.clone(),
-        first_vertex,
-        first_edge,
-        frames: rest_frames(&rest)?,
-        rest_forms: vec![Vector3::zeros(); rest.mesh.num_faces()],
-        thickness: shell.thickness,
-        director_shape: director_shape(shell.bending).0,
-        stencils: bending_stencils(
-            &shell.surface.mesh,
-            first_vertex,
-            first_edge.unwrap_or(Dof(0)),
-        ),
-    })
-}
-
-fn rest_surface(shell: &Shell) -> Surface {
-    Surface {
-        mesh: shell.surface.mesh.clone(),
-        positions: shell.rest_positions.clone(),
-    }
-}
-
-/// Every vertex takes a third of the mass of its rest faces.
-fn add_vertex_masses(part: &ShellPart, density: f64, masses: &mut [f64]) {
-    for (face, frame) in part.mesh.faces().iter().zip(&part.frames) {
-        let third = density * part.thickness * frame.area / 3.0;
-        for &v in face {
-            let start = part.first_vertex.0 as usize + 3 * v as usize;
-            masses[start..start + 3]
-                .iter_mut()
-                .for_each(|m| *m += third);
-        }
     }
 }
 
@@ -245,81 +192,6 @@ fn vertex_masses(parts: &[ShellPart], masses: &[f64]) -> Vec<(Dof, f64)> {
         .flat_map(|p| p.vertex_dofs().step_by(3))
         .map(|start| (Dof(start as u32), masses[start]))
         .collect()
-}
-
-fn hinge_bending(shell: &Shell, part: &ShellPart, layout: &DofLayout) -> Box<dyn Energy> {
-    let nu = shell.poissons_ratio;
-    let rigidity = shell.youngs_modulus * shell.thickness.powi(3) / (12.0 * (1.0 - nu * nu));
-    let rest = rest_surface(shell);
-    let hinge = DiscreteShellsHinge::new(
-        &rest,
-        part.first_vertex,
-        &part.frames,
-        shell.rest_curved,
-        rigidity,
-    );
-    Box::new(Assembled::new(hinge, layout))
-}
-
-/// Bending with mid-edge directors: finds the rest directors where the rest shape is curved, relaxes the directors of
-/// the start shape in `q`, and adds their inertia.
-fn director_bending<P: AngleProfile + 'static>(
-    shell: &Shell,
-    part: &mut ShellPart,
-    layout: &DofLayout,
-    q: &mut [f64],
-    masses: &mut [f64],
-) -> Result<Option<Box<dyn Energy>>, RestError> {
-    let material = StVenantKirchhoff::new(shell.youngs_modulus, shell.poissons_ratio);
-    let num_faces = part.mesh.num_faces();
-    let bending = |part: &ShellPart, forms| {
-        let (stencils, frames) = (part.stencils.clone(), part.frames.clone());
-        Assembled::new(
-            MidEdgeBending::<P, _>::new(stencils, frames, forms, shell.thickness, material),
-            layout,
-        )
-    };
-    let first_edge = part.first_edge.expect("director models have edge unknowns");
-    let angles = (first_edge, part.mesh.num_edges());
-    let flat = vec![Vector3::zeros(); num_faces];
-    let mut rest_q = q.to_vec();
-    write_points(&mut rest_q, part.first_vertex, &shell.rest_positions);
-    let mut at_rest = bending(part, flat);
-    relax_directors(&mut at_rest, layout, angles, &mut rest_q)?;
-    if shell.rest_curved {
-        part.rest_forms = (0..num_faces)
-            .map(|f| at_rest.local().second_form(f, &at_rest.gather(f, &rest_q)))
-            .collect();
-    }
-    add_director_inertia(shell, part, &at_rest, &rest_q, first_edge, masses);
-    let mut energy = bending(part, part.rest_forms.clone());
-    // From the rest directors: where the start shape is the rest shape this is the exact minimum, round-off included.
-    let range = first_edge.0 as usize..first_edge.0 as usize + part.mesh.num_edges();
-    q[range.clone()].copy_from_slice(&rest_q[range]);
-    if shell.surface.positions != shell.rest_positions || !shell.rest_curved {
-        relax_directors(&mut energy, layout, angles, q)?;
-    }
-    Ok(Some(Box::new(energy)))
-}
-
-/// "Better Bending", Eq. (52): every face gives its three edges ρ h³ Ā / 36, for BAC over cos⁴ of the rest tilt.
-fn add_director_inertia<P: AngleProfile>(
-    shell: &Shell,
-    part: &ShellPart,
-    bending: &Assembled<MidEdgeBending<P, StVenantKirchhoff>, 21, 9>,
-    rest_q: &[f64],
-    first_edge: Dof,
-    masses: &mut [f64],
-) {
-    let scale = shell.density * shell.thickness.powi(3) / 12.0;
-    for face in 0..part.mesh.num_faces() {
-        let shares = bending
-            .local()
-            .director_inertia(face, &bending.gather(face, rest_q));
-        for (edge, share) in part.mesh.face_edges()[face].iter().zip(shares) {
-            masses[(first_edge.0 + edge.0) as usize] += scale * share;
-        }
-    }
 }
 
 /// The points whose motion is that of an obstacle.

@@ -8,6 +8,7 @@ mod assemble;
 mod bending_models;
 mod clamps;
 mod display;
+mod elastic;
 mod fingerprint;
 mod free_parts;
 pub mod model;

@@ -3,7 +3,9 @@
 //! [`check`] takes an energy, a state in which nothing is special, its formula over jets, and what it claims; it returns
 //! the first thing that does not hold. An energy of a user is checked by the same call.
 
-use nalgebra::{Rotation3, Vector3};
+use std::sync::Arc;
+
+use nalgebra::{Rotation3, SVector, Vector3};
 
 use crate::assembly::{
     Assembled, DofLayout, Energy, HessianBuilder, LocalEnergy, Pattern, PatternBuilder,
@@ -64,85 +66,11 @@ pub fn check<const N: usize, const K: usize, L: LocalEnergy<N, K>>(
     let mut total = 0.0;
     for stencil in 0..energy.local().num_stencils() {
         let x = energy.gather(stencil, q);
-        let exact = energy.local().hessian(stencil, &x);
         let jets = std::array::from_fn(|i| Jet::variable(x[i], i));
         let oracle = formula(energy.local(), stencil, &jets);
-        // Absent nodes take part in no formula, so the jets' derivatives by them are zero as well.
-        let scale = 1.0 + oracle.value().abs();
-        let (gradient_value, gradient) = energy.local().gradient(stencil, &x);
-        let gradient_scale = 1e-300 + oracle.gradient().iter().fold(0.0f64, |m, g| m.max(g.abs()));
-        let hessian_scale =
-            1e-300 + (0..N * N).fold(0.0f64, |m, k| m.max(oracle.hessian(k / N, k % N).abs()));
-        // A few hundred roundings of sums of N² terms.
-        let tolerance = 1e-11;
-        for value in [
-            exact.value,
-            gradient_value,
-            energy.local().value(stencil, &x),
-        ] {
-            if (value - oracle.value()).abs() > tolerance * scale {
-                return fail(
-                    "value equals that of the formula",
-                    stencil,
-                    value,
-                    oracle.value(),
-                );
-            }
-        }
-        for i in 0..N {
-            for found in [gradient[i], exact.gradient[i]] {
-                if (found - oracle.gradient()[i]).abs() > tolerance * gradient_scale {
-                    return fail(
-                        "gradient equals that of dual numbers",
-                        stencil,
-                        found,
-                        oracle.gradient()[i],
-                    );
-                }
-            }
-            for j in 0..N {
-                if (exact.hessian[(i, j)] - oracle.hessian(i, j)).abs() > tolerance * hessian_scale
-                {
-                    return fail(
-                        "Hessian equals that of dual numbers",
-                        stencil,
-                        exact.hessian[(i, j)],
-                        oracle.hessian(i, j),
-                    );
-                }
-                if (exact.hessian[(i, j)] - exact.hessian[(j, i)]).abs() > tolerance * hessian_scale
-                {
-                    return fail(
-                        "Hessian is symmetric",
-                        stencil,
-                        exact.hessian[(i, j)],
-                        exact.hessian[(j, i)],
-                    );
-                }
-            }
-        }
-        let projected = energy.local().projected_hessian(stencil, &x, 0.0).hessian;
-        let partial = energy.local().projected_hessian(stencil, &x, 0.3).hessian;
-        let blend = projected + (exact.hessian - projected) * 0.3;
-        if !((partial - blend).amax() <= tolerance * hessian_scale) {
-            return fail(
-                "the share of negative curvature that is kept is the one asked for",
-                stencil,
-                partial.amax(),
-                blend.amax(),
-            );
-        }
-        let lowest = nalgebra::DMatrix::from_column_slice(N, N, projected.as_slice())
-            .symmetric_eigenvalues()
-            .min();
-        if lowest < -1e-10 * projected.amax() {
-            return fail(
-                "projected Hessian is positive semidefinite",
-                stencil,
-                lowest,
-                0.0,
-            );
-        }
+        derivatives(energy.local(), stencil, &x, &oracle, &fail)?;
+        projection(energy.local(), stencil, &x, hessian_scale(&oracle), &fail)?;
+        let gradient = energy.local().gradient(stencil, &x).1;
         total += oracle.value().abs() + gradient.norm();
     }
     if !(total > 0.0) {
@@ -158,22 +86,132 @@ pub fn check<const N: usize, const K: usize, L: LocalEnergy<N, K>>(
     if claims.rigid_motion_invariant {
         rigid_motion(&energy, layout, q, &fail)?;
     }
-    if let Some(rest) = &claims.rest {
-        let mut moved = vec![0.0; q.len()];
-        energy.add_gradient(q, &mut moved);
-        let mut gradient = vec![0.0; q.len()];
-        energy.add_gradient(rest, &mut gradient);
-        let scale = moved.iter().fold(0.0f64, |m, g| m.max(g.abs()));
-        for (i, g) in gradient.iter().enumerate() {
-            if g.abs() > 1e-9 * scale {
-                return fail("no force at rest", i, *g, 0.0);
+    match &claims.rest {
+        Some(rest) => no_force(&energy, q, rest, &fail),
+        None => Ok(()),
+    }
+}
+
+type Fail<'a> = dyn Fn(&'static str, usize, f64, f64) -> Result<(), Violation> + 'a;
+
+/// A few hundred roundings of sums of N² terms.
+const TOLERANCE: f64 = 1e-11;
+
+/// Largest entry of the Hessian.
+fn hessian_scale<const N: usize>(oracle: &Jet<N>) -> f64 {
+    1e-300 + (0..N * N).fold(0.0f64, |m, k| m.max(oracle.hessian(k / N, k % N).abs()))
+}
+
+/// Value, gradient and Hessian of one element are those of the formula over jets.
+fn derivatives<const N: usize, const K: usize, L: LocalEnergy<N, K>>(
+    local: &L,
+    stencil: usize,
+    x: &SVector<f64, N>,
+    oracle: &Jet<N>,
+    fail: &Fail<'_>,
+) -> Result<(), Violation> {
+    let exact = local.hessian(stencil, x);
+    // Absent nodes take part in no formula, so the jets' derivatives by them are zero as well.
+    let scale = 1.0 + oracle.value().abs();
+    let (gradient_value, gradient) = local.gradient(stencil, x);
+    let gradient_scale = 1e-300 + oracle.gradient().iter().fold(0.0f64, |m, g| m.max(g.abs()));
+    let hessian_scale = hessian_scale(oracle);
+    for value in [exact.value, gradient_value, local.value(stencil, x)] {
+        if (value - oracle.value()).abs() > TOLERANCE * scale {
+            return fail(
+                "value equals that of the formula",
+                stencil,
+                value,
+                oracle.value(),
+            );
+        }
+    }
+    for i in 0..N {
+        for found in [gradient[i], exact.gradient[i]] {
+            if (found - oracle.gradient()[i]).abs() > TOLERANCE * gradient_scale {
+                return fail(
+                    "gradient equals that of dual numbers",
+                    stencil,
+                    found,
+                    oracle.gradient()[i],
+                );
+            }
+        }
+        for j in 0..N {
+            if (exact.hessian[(i, j)] - oracle.hessian(i, j)).abs() > TOLERANCE * hessian_scale {
+                return fail(
+                    "Hessian equals that of dual numbers",
+                    stencil,
+                    exact.hessian[(i, j)],
+                    oracle.hessian(i, j),
+                );
+            }
+            if (exact.hessian[(i, j)] - exact.hessian[(j, i)]).abs() > TOLERANCE * hessian_scale {
+                return fail(
+                    "Hessian is symmetric",
+                    stencil,
+                    exact.hessian[(i, j)],
+                    exact.hessian[(j, i)],
+                );
             }
         }
     }
     Ok(())
 }
 
-type Fail<'a> = dyn Fn(&'static str, usize, f64, f64) -> Result<(), Violation> + 'a;
+/// The projected Hessian of one element is positive semidefinite, and a share of the negative curvature is that share.
+fn projection<const N: usize, const K: usize, L: LocalEnergy<N, K>>(
+    local: &L,
+    stencil: usize,
+    x: &SVector<f64, N>,
+    hessian_scale: f64,
+    fail: &Fail<'_>,
+) -> Result<(), Violation> {
+    let exact = local.hessian(stencil, x);
+    let projected = local.projected_hessian(stencil, x, 0.0).hessian;
+    let partial = local.projected_hessian(stencil, x, 0.3).hessian;
+    let blend = projected + (exact.hessian - projected) * 0.3;
+    if !((partial - blend).amax() <= TOLERANCE * hessian_scale) {
+        return fail(
+            "the share of negative curvature that is kept is the one asked for",
+            stencil,
+            partial.amax(),
+            blend.amax(),
+        );
+    }
+    let lowest = nalgebra::DMatrix::from_column_slice(N, N, projected.as_slice())
+        .symmetric_eigenvalues()
+        .min();
+    if lowest < -1e-10 * projected.amax() {
+        return fail(
+            "projected Hessian is positive semidefinite",
+            stencil,
+            lowest,
+            0.0,
+        );
+    }
+    Ok(())
+}
+
+/// The gradient vanishes at rest, measured by that at `q`.
+fn no_force(
+    energy: &dyn Energy,
+    q: &[f64],
+    rest: &[f64],
+    fail: &Fail<'_>,
+) -> Result<(), Violation> {
+    let mut moved = vec![0.0; q.len()];
+    energy.add_gradient(q, &mut moved);
+    let mut gradient = vec![0.0; q.len()];
+    energy.add_gradient(rest, &mut gradient);
+    let scale = moved.iter().fold(0.0f64, |m, g| m.max(g.abs()));
+    for (i, g) in gradient.iter().enumerate() {
+        if g.abs() > 1e-9 * scale {
+            return fail("no force at rest", i, *g, 0.0);
+        }
+    }
+    Ok(())
+}
 
 /// Central differences of value and gradient along a fixed direction: the error must fall with h².
 fn differences(energy: &dyn Energy, q: &[f64], fail: &Fail<'_>) -> Result<(), Violation> {
@@ -216,23 +254,8 @@ fn assembly<const N: usize, const K: usize, L: LocalEnergy<N, K>>(
     q: &[f64],
     fail: &Fail<'_>,
 ) -> Result<(), Violation> {
-    let mut builder = PatternBuilder::default();
-    energy.add_to_pattern(q, &mut builder);
-    let pattern = std::sync::Arc::new(Pattern::new(layout, &builder.finish()));
-    energy.bind(&pattern);
-    let run = |projection| {
-        let mut matrix = SymmetricMatrix::zeros(pattern.clone());
-        let mut gradient = vec![0.0; q.len()];
-        let mut coupling = vec![0.0; layout.num_solved_dofs()];
-        let mut hessian = HessianBuilder {
-            matrix: &mut matrix,
-            layout,
-            prescribed_step: &[],
-            coupling: &mut coupling,
-        };
-        energy.add_derivatives(q, projection, &mut gradient, &mut hessian);
-        (gradient, matrix)
-    };
+    let pattern = bound_pattern(energy, layout, q);
+    let run = |projection| derivatives_at(energy, layout, &pattern, q, &[], projection);
     let (gradient, matrix) = run(PsdProjection::Exact);
     let mut alone = vec![0.0; q.len()];
     energy.add_gradient(q, &mut alone);
@@ -276,13 +299,56 @@ fn assembly<const N: usize, const K: usize, L: LocalEnergy<N, K>>(
         }
     }
     #[cfg(feature = "parallel")]
+    same_bits(&gradient, &matrix, || run(PsdProjection::Exact), fail)?;
+    Ok(())
+}
+
+/// The pattern of the energy's Hessian, which is bound to it.
+fn bound_pattern(energy: &mut dyn Energy, layout: &DofLayout, q: &[f64]) -> Arc<Pattern> {
+    let mut builder = PatternBuilder::default();
+    energy.add_to_pattern(q, &mut builder);
+    let pattern = Arc::new(Pattern::new(layout, &builder.finish()));
+    energy.bind(&pattern);
+    pattern
+}
+
+/// Gradient and assembled Hessian.
+fn derivatives_at(
+    energy: &dyn Energy,
+    layout: &DofLayout,
+    pattern: &Arc<Pattern>,
+    q: &[f64],
+    prescribed_step: &[f64],
+    projection: PsdProjection,
+) -> (Vec<f64>, SymmetricMatrix) {
+    let mut matrix = SymmetricMatrix::zeros(pattern.clone());
+    let mut gradient = vec![0.0; q.len()];
+    let mut coupling = vec![0.0; layout.num_solved_dofs()];
+    let mut hessian = HessianBuilder {
+        matrix: &mut matrix,
+        layout,
+        prescribed_step,
+        coupling: &mut coupling,
+    };
+    energy.add_derivatives(q, projection, &mut gradient, &mut hessian);
+    (gradient, matrix)
+}
+
+/// Derivatives from `run` have the same bits with any number of threads.
+#[cfg(feature = "parallel")]
+fn same_bits(
+    gradient: &[f64],
+    matrix: &SymmetricMatrix,
+    run: impl Fn() -> (Vec<f64>, SymmetricMatrix) + Sync,
+    fail: &Fail<'_>,
+) -> Result<(), Violation> {
     for threads in [1, 3] {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
             .expect("a thread pool starts");
-        let (g, m) = pool.install(|| run(PsdProjection::Exact));
-        if g != gradient || m.values != matrix.values {
+        let (g, m) = pool.install(&run);
+        if g != *gradient || m.values != matrix.values {
             return fail(
                 "serial and parallel assembly give the same bits",
                 threads,
@@ -354,10 +420,7 @@ pub fn check_global(
     };
     energy.prepare(q);
     energy.begin_iteration(q);
-    let mut builder = PatternBuilder::default();
-    energy.add_to_pattern(q, &mut builder);
-    let pattern = std::sync::Arc::new(Pattern::new(layout, &builder.finish()));
-    energy.bind(&pattern);
+    let pattern = bound_pattern(energy, layout, q);
     let solved = layout.num_solved_dofs();
     let direction: Vec<f64> = (0..q.len())
         .map(|i| {
@@ -368,22 +431,18 @@ pub fn check_global(
             }
         })
         .collect();
-    let run = |energy: &dyn Energy, projection| {
-        let mut matrix = SymmetricMatrix::zeros(pattern.clone());
-        let mut gradient = vec![0.0; q.len()];
-        let mut coupling = vec![0.0; solved];
-        let steps = &direction[solved..];
-        let mut hessian = HessianBuilder {
-            matrix: &mut matrix,
+    let run = |projection| {
+        derivatives_at(
+            energy,
             layout,
-            prescribed_step: steps,
-            coupling: &mut coupling,
-        };
-        energy.add_derivatives(q, projection, &mut gradient, &mut hessian);
-        (gradient, matrix)
+            &pattern,
+            q,
+            &direction[solved..],
+            projection,
+        )
     };
-    let (gradient, matrix) = run(energy, PsdProjection::Exact);
-    let (same, projected) = run(energy, PsdProjection::Clamp);
+    let (gradient, matrix) = run(PsdProjection::Exact);
+    let (same, projected) = run(PsdProjection::Clamp);
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let (slope, image) = (
         dot(&gradient, &direction),
@@ -406,25 +465,23 @@ pub fn check_global(
         );
     }
     #[cfg(feature = "parallel")]
-    for threads in [1, 3] {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .expect("a thread pool starts");
-        let (g, m) = pool.install(|| run(energy, PsdProjection::Exact));
-        if g != gradient || m.values != matrix.values {
-            return fail(
-                "serial and parallel assembly give the same bits",
-                threads,
-                1.0,
-                0.0,
-            );
-        }
-    }
+    same_bits(&gradient, &matrix, || run(PsdProjection::Exact), &fail)?;
     if dot(&projected.multiply(&direction[..solved]), &direction) < 0.0 {
         return fail("projected Hessian is positive semidefinite", 0, -1.0, 0.0);
     }
-    let at = |h: f64| -> Vec<f64> { q.iter().zip(&direction).map(|(x, d)| x + h * d).collect() };
+    global_differences(energy, q, &direction, slope, &image, &fail)
+}
+
+/// Central differences along `direction`: those of the value approach `slope`, those of the gradient `image`, with h².
+fn global_differences(
+    energy: &mut dyn Energy,
+    q: &[f64],
+    direction: &[f64],
+    slope: f64,
+    image: &[f64],
+    fail: &Fail<'_>,
+) -> Result<(), Violation> {
+    let at = |h: f64| -> Vec<f64> { q.iter().zip(direction).map(|(x, d)| x + h * d).collect() };
     let extent = q.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let mut errors = Vec::new();
     for h in [4e-6, 2e-6, 1e-6].map(|h| h * extent) {
@@ -438,7 +495,7 @@ pub fn check_global(
         let ((v1, g1), (v0, g0)) = (value_and_gradient(h), value_and_gradient(-h));
         let by_value = ((v1 - v0) / (2.0 * h) - slope).abs() / slope.abs();
         let scale = image.iter().fold(1e-300f64, |m, x| m.max(x.abs()));
-        let by_gradient = (0..solved)
+        let by_gradient = (0..image.len())
             .map(|i| ((g1[i] - g0[i]) / (2.0 * h) - image[i]).abs() / scale)
             .fold(0.0, f64::max);
         errors.push([by_value, by_gradient]);

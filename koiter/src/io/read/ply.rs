@@ -95,6 +95,41 @@ struct Header {
     num_lines: usize,
 }
 
+impl Encoding {
+    fn parse(name: &str, line: usize) -> Result<Self, ParseError> {
+        match name {
+            "ascii" => Ok(Self::Text),
+            "binary_little_endian" => Ok(Self::Binary(Endian::Little)),
+            "binary_big_endian" => Ok(Self::Binary(Endian::Big)),
+            _ => Err(ParseError::at_line(
+                line,
+                "the format is none of ascii, binary_little_endian, binary_big_endian",
+            )),
+        }
+    }
+}
+
+impl Property {
+    /// From the words after `property`.
+    fn parse(words: &[&str], line: usize) -> Result<Self, ParseError> {
+        let (length, item, name) = match words {
+            ["list", length, item, name] => (Some(Scalar::parse(length, line)?), item, name),
+            [item, name] => (None, item, name),
+            _ => {
+                return Err(ParseError::at_line(
+                    line,
+                    "a property is 'property TYPE NAME' or 'property list TYPE TYPE NAME'",
+                ));
+            }
+        };
+        Ok(Self {
+            name: (*name).to_string(),
+            length,
+            item: Scalar::parse(item, line)?,
+        })
+    }
+}
+
 impl Scalar {
     fn parse(word: &str, line: usize) -> Result<Self, ParseError> {
         Ok(match word {
@@ -142,18 +177,7 @@ fn parse_header(bytes: &[u8]) -> Result<(Header, &[u8]), ParseError> {
             ["ply"] if line == 1 => {}
             _ if line == 1 => return Err(fault("a PLY file starts with the line 'ply'")),
             [] | ["comment" | "obj_info", ..] => {}
-            ["format", name, "1.0"] => {
-                encoding = Some(match *name {
-                    "ascii" => Encoding::Text,
-                    "binary_little_endian" => Encoding::Binary(Endian::Little),
-                    "binary_big_endian" => Encoding::Binary(Endian::Big),
-                    _ => {
-                        return Err(fault(
-                            "the format is none of ascii, binary_little_endian, binary_big_endian",
-                        ));
-                    }
-                });
-            }
+            ["format", name, "1.0"] => encoding = Some(Encoding::parse(name, line)?),
             ["element", name, count] => {
                 let count = count
                     .parse()
@@ -164,27 +188,11 @@ fn parse_header(bytes: &[u8]) -> Result<(Header, &[u8]), ParseError> {
                     properties: Vec::new(),
                 });
             }
-            ["property", rest @ ..] => {
-                let (length, item, name) = match rest {
-                    ["list", length, item, name] => {
-                        (Some(Scalar::parse(length, line)?), item, name)
-                    }
-                    [item, name] => (None, item, name),
-                    _ => {
-                        return Err(fault(
-                            "a property is 'property TYPE NAME' or 'property list TYPE TYPE NAME'",
-                        ));
-                    }
-                };
+            ["property", description @ ..] => {
                 let element = elements
                     .last_mut()
                     .ok_or_else(|| fault("a property comes before any element"))?;
-                let property = Property {
-                    name: (*name).to_string(),
-                    length,
-                    item: Scalar::parse(item, line)?,
-                };
-                element.properties.push(property);
+                element.properties.push(Property::parse(description, line)?);
             }
             ["end_header"] => {
                 let encoding = encoding.ok_or_else(|| fault("the header has no 'format' line"))?;

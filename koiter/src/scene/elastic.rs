@@ -1,0 +1,206 @@
+//! From the shells of a model to their membranes, bending energies and masses.
+
+use nalgebra::Vector3;
+
+use super::assemble::{BuildError, Unknowns, write_points};
+use super::model::{BendingModel, Model, Shell};
+use crate::assembly::{Assembled, Dof, DofLayout, Energy};
+use crate::energy::Membrane;
+use crate::energy::bending::{
+    AngleProfile, DirectorShape, DiscreteShellsHinge, Identity, MidEdgeBending, Sine, Tangent,
+    bending_stencils,
+};
+use crate::integrate::{ShellPart, relax_directors};
+use crate::material::StVenantKirchhoff;
+use crate::mesh::Surface;
+use crate::rest::{RestError, rest_frames};
+
+/// What the shells are made of.
+pub(super) struct Elastic {
+    pub(super) energies: Vec<Box<dyn Energy>>,
+    /// Of every solved unknown [kg, or kg·m² for director angles].
+    pub(super) masses: Vec<f64>,
+    pub(super) parts: Vec<ShellPart>,
+}
+
+impl Elastic {
+    /// Membranes, bending and masses of all shells; relaxes the directors in `q`.
+    pub(super) fn new(
+        model: &Model,
+        unknowns: &Unknowns,
+        q: &mut [f64],
+    ) -> Result<Self, BuildError> {
+        let mut elastic = Self {
+            energies: Vec::new(),
+            masses: vec![0.0; unknowns.layout.num_solved_dofs()],
+            parts: Vec::new(),
+        };
+        let firsts = unknowns.vertices.iter().zip(&unknowns.edges);
+        for (shell, (&first_vertex, &first_edge)) in model.shells.iter().zip(firsts) {
+            shell_part(shell, first_vertex, first_edge)
+                .and_then(|part| elastic.add(shell, part, &unknowns.layout, q))
+                .map_err(|error| BuildError::Rest {
+                    shell: shell.name.clone(),
+                    error,
+                })?;
+        }
+        Ok(elastic)
+    }
+
+    fn add(
+        &mut self,
+        shell: &Shell,
+        mut part: ShellPart,
+        layout: &DofLayout,
+        q: &mut [f64],
+    ) -> Result<(), RestError> {
+        let masses = &mut self.masses;
+        add_vertex_masses(&part, shell.density, masses);
+        let membrane = Membrane::new(
+            &part.mesh,
+            part.first_vertex,
+            part.frames.clone(),
+            shell.thickness,
+            StVenantKirchhoff::new(shell.youngs_modulus, shell.poissons_ratio),
+        );
+        self.energies
+            .push(Box::new(Assembled::new(membrane, layout)));
+        let bending = match shell.bending {
+            BendingModel::Bac => director_bending::<Tangent>(shell, &mut part, layout, q, masses)?,
+            BendingModel::Dcs => director_bending::<Sine>(shell, &mut part, layout, q, masses)?,
+            BendingModel::Dso => director_bending::<Identity>(shell, &mut part, layout, q, masses)?,
+            BendingModel::DsTheta => Some(hinge_bending(shell, &part, layout)),
+            BendingModel::None => None,
+        };
+        self.energies.extend(bending);
+        self.parts.push(part);
+        Ok(())
+    }
+}
+
+/// How directors are shown, and whether the model has them as unknowns.
+pub(super) fn director_shape(bending: BendingModel) -> (DirectorShape, bool) {
+    match bending {
+        BendingModel::Bac => (DirectorShape::Tangent, true),
+        BendingModel::Dcs | BendingModel::Dso => (DirectorShape::Unit, true),
+        BendingModel::DsTheta | BendingModel::None => (DirectorShape::Bisector, false),
+    }
+}
+
+fn shell_part(
+    shell: &Shell,
+    first_vertex: Dof,
+    first_edge: Option<Dof>,
+) -> Result<ShellPart, RestError> {
+    let rest = rest_surface(shell);
+    Ok(ShellPart {
+        name: shell.name.clone(),
+        mesh: shell.surface.mesh.clone(),
+        first_vertex,
+        first_edge,
+        frames: rest_frames(&rest)?,
+        rest_forms: vec![Vector3::zeros(); rest.mesh.num_faces()],
+        thickness: shell.thickness,
+        director_shape: director_shape(shell.bending).0,
+        stencils: bending_stencils(
+            &shell.surface.mesh,
+            first_vertex,
+            first_edge.unwrap_or(Dof(0)),
+        ),
+    })
+}
+
+pub(super) fn rest_surface(shell: &Shell) -> Surface {
+    Surface {
+        mesh: shell.surface.mesh.clone(),
+        positions: shell.rest_positions.clone(),
+    }
+}
+
+/// Every vertex takes a third of the mass of its rest faces.
+fn add_vertex_masses(part: &ShellPart, density: f64, masses: &mut [f64]) {
+    for (face, frame) in part.mesh.faces().iter().zip(&part.frames) {
+        let third = density * part.thickness * frame.area / 3.0;
+        for &v in face {
+            let start = part.first_vertex.0 as usize + 3 * v as usize;
+            masses[start..start + 3]
+                .iter_mut()
+                .for_each(|m| *m += third);
+        }
+    }
+}
+
+fn hinge_bending(shell: &Shell, part: &ShellPart, layout: &DofLayout) -> Box<dyn Energy> {
+    let nu = shell.poissons_ratio;
+    let rigidity = shell.youngs_modulus * shell.thickness.powi(3) / (12.0 * (1.0 - nu * nu));
+    let rest = rest_surface(shell);
+    let hinge = DiscreteShellsHinge::new(
+        &rest,
+        part.first_vertex,
+        &part.frames,
+        shell.rest_curved,
+        rigidity,
+    );
+    Box::new(Assembled::new(hinge, layout))
+}
+
+/// Bending with mid-edge directors: finds the rest directors where the rest shape is curved, relaxes the directors of
+/// the start shape in `q`, and adds their inertia.
+fn director_bending<P: AngleProfile + 'static>(
+    shell: &Shell,
+    part: &mut ShellPart,
+    layout: &DofLayout,
+    q: &mut [f64],
+    masses: &mut [f64],
+) -> Result<Option<Box<dyn Energy>>, RestError> {
+    let material = StVenantKirchhoff::new(shell.youngs_modulus, shell.poissons_ratio);
+    let num_faces = part.mesh.num_faces();
+    let bending = |part: &ShellPart, forms| {
+        let (stencils, frames) = (part.stencils.clone(), part.frames.clone());
+        Assembled::new(
+            MidEdgeBending::<P, _>::new(stencils, frames, forms, shell.thickness, material),
+            layout,
+        )
+    };
+    let first_edge = part.first_edge.expect("director models have edge unknowns");
+    let angles = (first_edge, part.mesh.num_edges());
+    let flat = vec![Vector3::zeros(); num_faces];
+    let mut rest_q = q.to_vec();
+    write_points(&mut rest_q, part.first_vertex, &shell.rest_positions);
+    let mut at_rest = bending(part, flat);
+    relax_directors(&mut at_rest, layout, angles, &mut rest_q)?;
+    if shell.rest_curved {
+        part.rest_forms = (0..num_faces)
+            .map(|f| at_rest.local().second_form(f, &at_rest.gather(f, &rest_q)))
+            .collect();
+    }
+    add_director_inertia(shell, part, &at_rest, &rest_q, first_edge, masses);
+    let mut energy = bending(part, part.rest_forms.clone());
+    // From the rest directors: where the start shape is the rest shape this is the exact minimum, round-off included.
+    let range = first_edge.0 as usize..first_edge.0 as usize + part.mesh.num_edges();
+    q[range.clone()].copy_from_slice(&rest_q[range]);
+    if shell.surface.positions != shell.rest_positions || !shell.rest_curved {
+        relax_directors(&mut energy, layout, angles, q)?;
+    }
+    Ok(Some(Box::new(energy)))
+}
+
+/// "Better Bending", Eq. (52): every face gives its three edges ρ h³ Ā / 36, for BAC over cos⁴ of the rest tilt.
+fn add_director_inertia<P: AngleProfile>(
+    shell: &Shell,
+    part: &ShellPart,
+    bending: &Assembled<MidEdgeBending<P, StVenantKirchhoff>, 21, 9>,
+    rest_q: &[f64],
+    first_edge: Dof,
+    masses: &mut [f64],
+) {
+    let scale = shell.density * shell.thickness.powi(3) / 12.0;
+    for face in 0..part.mesh.num_faces() {
+        let shares = bending
+            .local()
+            .director_inertia(face, &bending.gather(face, rest_q));
+        for (edge, share) in part.mesh.face_edges()[face].iter().zip(shares) {
+            masses[(first_edge.0 + edge.0) as usize] += scale * share;
+        }
+    }
+}
