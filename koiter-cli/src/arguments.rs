@@ -80,7 +80,7 @@ Examples:
   koiter run my/scene.toml --resume --until 5  goes on beyond the end that was reached
 
 The result folder holds manifest.json, topology.bin, frames/, stats.jsonl (a line a step), probes.csv and
-summary.json; a result that is there already is replaced, but not an interrupted run of the same scene.
+summary.json; a result that is there already is replaced, but not an interrupted run.
 
 checkpoint.bin is where --resume goes on: written after a step once output.checkpoint_seconds (10 s) have gone by,
 at the end, and on Ctrl-C or SIGTERM, which end the run after the present step. A second Ctrl-C ends it at once,
@@ -93,16 +93,16 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Stop at this simulated time [s]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(crate) until: Option<f64>,
     /// Go on with a run that was interrupted, to the same bits as one that was not
     #[arg(long)]
     pub(crate) resume: bool,
-    /// Begin again where the result folder holds an interrupted run of this scene, and replace it
+    /// Begin again where the result folder holds an interrupted run, and replace it
     #[arg(long, conflicts_with = "resume")]
     pub(crate) restart: bool,
     /// Number of threads [default: all cores]; the result is the same bits for any number
-    #[arg(long, value_name = "N", value_parser = parse_threads)]
+    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
     pub(crate) threads: Option<usize>,
     /// Print nothing but warnings and errors
     #[arg(long)]
@@ -165,7 +165,7 @@ pub(crate) struct RenderArguments {
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
     /// Frame of a picture, from 0 [default: the last]
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub(crate) frame: Option<usize>,
     /// Colour by a field: strain, bending_energy_density or mean_curvature
     #[arg(long, value_name = "FIELD")]
@@ -177,7 +177,7 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     pub(crate) size: (u32, u32),
     /// Frames a second of a film [default: real time, at most 30]
-    #[arg(long, value_name = "FPS")]
+    #[arg(long, value_name = "FPS", allow_negative_numbers = true)]
     pub(crate) fps: Option<f64>,
     /// Draw the edges of the triangles
     #[arg(long)]
@@ -206,7 +206,7 @@ pub(crate) struct ExportArguments {
     #[arg(short, long, value_name = "PATH")]
     pub(crate) output: PathBuf,
     /// Frame, from 0 [default: the last; vtu and glb: all]
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub(crate) frame: Option<usize>,
     /// Colour a frame of a glb by a field: strain, bending_energy_density or mean_curvature
     #[arg(long, value_name = "FIELD")]
@@ -278,7 +278,7 @@ pub(crate) struct SizeArguments {
     #[arg(long, value_delimiter = ',', default_value = "10000,40000,160000", value_parser = parse_faces)]
     pub(crate) faces: Vec<usize>,
     /// Repetitions; the fastest counts
-    #[arg(long, default_value_t = 3)]
+    #[arg(long, default_value_t = 3, allow_negative_numbers = true)]
     pub(crate) repeats: usize,
 }
 
@@ -291,7 +291,7 @@ pub(crate) struct DrapeArguments {
     #[arg(long, value_delimiter = ',', default_value = "ds-theta,bac")]
     pub(crate) bending: Vec<String>,
     /// Steps of 20 ms
-    #[arg(long, default_value_t = 40)]
+    #[arg(long, default_value_t = 40, allow_negative_numbers = true)]
     pub(crate) steps: usize,
     /// Numbers of threads [default: one, and all cores]
     #[arg(long, value_delimiter = ',')]

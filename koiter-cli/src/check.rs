@@ -1,11 +1,11 @@
 //! `koiter check`: reads everything, runs nothing.
 
 use crate::output::say;
+use koiter::scene::readable_bytes;
 use serde::Serialize;
 
 use crate::arguments::CheckArguments;
 use crate::failure::Failure;
-use crate::memory;
 use crate::run::start;
 use crate::scene_source::load;
 
@@ -103,13 +103,13 @@ impl Report {
         }
         for shell in &self.shells {
             say!(
-                "shell {}: {} vertices, {} triangles, {:.4} m², {:.4} kg, edges {:.2e} m (shortest {:.2e} m), \
+                "shell {}: {} vertices, {} triangles, {} m², {} kg, edges {:.2e} m (shortest {:.2e} m), \
                  smallest angle {:.1}°, boundary loops of {:?} vertices",
                 shell.name,
                 shell.vertices,
                 shell.faces,
-                shell.area,
-                shell.mass,
+                decimal(shell.area),
+                decimal(shell.mass),
                 shell.mean_edge,
                 shell.shortest_edge,
                 shell.min_angle_degrees,
@@ -127,9 +127,17 @@ impl Report {
             self.faces,
             self.dofs,
             self.hessian_nonzeros,
-            memory::readable(self.estimated_memory_bytes)
+            readable_bytes(self.estimated_memory_bytes as f64)
         );
         say!("{} steps of {} s", self.steps, self.dt);
         say!("the scene is sound");
+    }
+}
+
+/// With four decimals, unless that would be digits that nobody reads.
+fn decimal(number: f64) -> String {
+    match number < 1e6 {
+        true => format!("{number:.4}"),
+        false => format!("{number:.3e}"),
     }
 }

@@ -11,10 +11,11 @@ use serde_json::json;
 use crate::arguments::{ExportArguments, ExportFormat};
 use crate::failure::Failure;
 use crate::output::say;
+use crate::output_path;
 
 /// Exports a frame, or all as a VTK series.
 pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
-    let reader = ResultReader::open(&arguments.result).map_err(Failure::input)?;
+    let reader = ResultReader::open(&arguments.result).map_err(Failure::result)?;
     let Some(last) = reader.len().checked_sub(1) else {
         return Err(Failure::input(format!(
             "{} has no frames",
@@ -36,6 +37,7 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         (ExportFormat::Vtu, false) => "vtu",
         (ExportFormat::Glb, _) => "glb",
     };
+    output_path::check(&arguments.output)?;
     let given = arguments
         .output
         .extension()
@@ -51,6 +53,7 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
             return Err(Failure::input(message));
         }
     };
+    output_path::check(&output)?;
     if is_series {
         write_vtu_series(&reader, &output, |_| {}).map_err(Failure::run)?;
     } else if arguments.to == ExportFormat::Glb {
@@ -58,7 +61,7 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     } else {
         let frame = reader
             .frame(arguments.frame.unwrap_or(last))
-            .map_err(Failure::input)?;
+            .map_err(Failure::result)?;
         let mesh = MeshWithFields::of_frame(&reader, &frame);
         match arguments.to {
             ExportFormat::Obj => write_obj(&output, &mesh),

@@ -4,6 +4,7 @@ use crate::output::say_error;
 use std::fmt::Display;
 use std::process::ExitCode;
 
+use koiter::io::result::ResultError;
 use koiter::scene::{Location, SceneError, Warning};
 use miette::{LabeledSpan, MietteDiagnostic, MietteHandlerOpts, NamedSource, Report, Severity};
 
@@ -36,6 +37,17 @@ impl Failure {
         Self::Run {
             message: message.to_string(),
             help: None,
+        }
+    }
+
+    /// A result that cannot be read.
+    pub(crate) fn result(error: ResultError) -> Self {
+        let failure = Self::input(&error);
+        match error {
+            ResultError::Broken { .. } => {
+                failure.with_help("koiter run with --restart makes this result anew")
+            }
+            _ => failure,
         }
     }
 

@@ -67,16 +67,6 @@ pub(crate) fn parse_size(text: &str) -> Result<u64, String> {
         .ok_or_else(|| "write it as 64GB or 500MB".to_owned())
 }
 
-/// `1.5 GB` and the like.
-pub(crate) fn readable(bytes: u64) -> String {
-    let bytes = bytes as f64;
-    match bytes {
-        b if b >= 1e9 => format!("{:.1} GB", b / 1e9),
-        b if b >= 1e6 => format!("{:.0} MB", b / 1e6),
-        b => format!("{:.0} kB", b / 1e3),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,13 +101,5 @@ mod tests {
         for text in ["", "64", "GB", "-1GB", "nanGB", "1TB"] {
             assert!(parse_size(text).is_err(), "{text}");
         }
-    }
-
-    #[test]
-    fn sizes_are_readable() {
-        assert_eq!(
-            (readable(1_500_000_000), readable(20_400_000)),
-            ("1.5 GB".into(), "20 MB".into())
-        );
     }
 }

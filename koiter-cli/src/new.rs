@@ -10,7 +10,7 @@ use serde_json::json;
 
 use crate::arguments::{NewArguments, Template};
 use crate::failure::Failure;
-use crate::output::say;
+use crate::output::{quoted, say};
 
 /// Writes the files of a template; nothing that is there is touched.
 pub(crate) fn new(arguments: &NewArguments) -> Result<(), Failure> {
@@ -30,9 +30,14 @@ pub(crate) fn new(arguments: &NewArguments) -> Result<(), Failure> {
             Failure::input(message).with_help("choose another name; nothing is overwritten")
         );
     }
-    for (path, bytes) in &files {
-        write_new(path, bytes)
-            .map_err(|error| Failure::run(format!("cannot write {}: {error}", path.display())))?;
+    for (index, (path, bytes)) in files.iter().enumerate() {
+        write_new(path, bytes).map_err(|error| {
+            // All or nothing, so that the same command can be given again.
+            files[..index]
+                .iter()
+                .for_each(|(path, _)| drop(fs::remove_file(path)));
+            Failure::run(format!("cannot write {}: {error}", path.display()))
+        })?;
     }
     let made: Vec<String> = files
         .iter()
@@ -49,12 +54,12 @@ pub(crate) fn new(arguments: &NewArguments) -> Result<(), Failure> {
     made.iter().for_each(|path| say!("made: {path}"));
     say!("next:");
     say!(
-        "  koiter check {0}    reads it and says what it is",
-        name.display()
+        "  koiter check {}    reads it and says what it is",
+        quoted(&name.to_string_lossy())
     );
     say!(
-        "  koiter run {0}      simulates it and makes a film",
-        name.display()
+        "  koiter run {}      simulates it and makes a film",
+        quoted(&name.to_string_lossy())
     );
     say!("and change {} in any editor", scene.display());
     Ok(())
@@ -85,7 +90,12 @@ fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
     // A file that appeared meanwhile is an error, not overwritten.
     let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
-    file.write_all(bytes)
+    let written = file.write_all(bytes).and_then(|()| file.sync_all());
+    if written.is_err() {
+        // Half a scene is of no use; that it cannot be removed either is not worth more words.
+        let _ = fs::remove_file(path);
+    }
+    written
 }
 
 #[cfg(test)]

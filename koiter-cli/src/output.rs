@@ -29,6 +29,15 @@ pub(crate) fn error_line(text: Arguments<'_>) {
     let _ = writeln!(stderr(), "{text}");
 }
 
+/// A word as a shell takes it.
+pub(crate) fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
+    match !word.is_empty() && word.chars().all(plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    }
+}
+
 /// `println!` that cannot panic.
 macro_rules! say {
     ($($argument:tt)*) => { $crate::output::line(format_args!($($argument)*)) };
@@ -40,3 +49,15 @@ macro_rules! say_error {
 }
 
 pub(crate) use {say, say_error};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_quoted_where_a_shell_would_split_them() {
+        assert_eq!(quoted("--set"), "--set");
+        assert_eq!(quoted("gravity=[0, 1]"), "'gravity=[0, 1]'");
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+    }
+}

@@ -13,6 +13,7 @@ use koiter_render::{
 };
 
 use crate::failure::Failure;
+use crate::output::quoted;
 use frame_view::{FrameView, Topology};
 
 /// Films of a run: small, so that they do not keep the user waiting.
@@ -33,12 +34,47 @@ pub(crate) struct Look {
     pub(crate) wireframe: bool,
 }
 
+/// The picture and the film that end a run; which film, depends on whether there is ffmpeg.
+const PICTURE: &str = "final.png";
+const FILMS: [&str; 2] = ["film.mp4", "film.gif"];
+
+/// Whether the pictures that end a run are there, and of its end.
+pub(crate) fn are_made(folder: &Path) -> bool {
+    let written = |name: &str| std::fs::metadata(folder.join(name))?.modified();
+    let Ok(end) = written("summary.json") else {
+        return false;
+    };
+    let is_made = |name: &str| written(name).is_ok_and(|time| time >= end);
+    is_made(PICTURE) && FILMS.into_iter().any(is_made)
+}
+
+/// What to do where the run is finished and its film is not.
+pub(crate) fn without_film(folder: &Path) -> String {
+    let film = folder.join(FILMS[0]);
+    let [folder, film] = [folder, &film].map(|path| quoted(&path.to_string_lossy()));
+    format!(
+        "the run has ended and is whole, its film is not made; make it with: koiter render {folder} -o {film}"
+    )
+}
+
+/// Files that pictures of a run leave when the program is killed.
+pub(crate) fn partial_files(folder: &Path) -> Vec<PathBuf> {
+    let names = FILMS.into_iter().chain([PICTURE]);
+    names
+        .flat_map(|name| koiter_render::partial_files(&folder.join(name)))
+        .collect()
+}
+
 /// Makes the pictures that end a run; returns their paths.
 pub(crate) fn after_run(
     folder: &Path,
     output: &OutputSpec,
     quiet: bool,
 ) -> Result<Vec<PathBuf>, Failure> {
+    for path in partial_files(folder) {
+        // What cannot be removed is a leftover and no harm.
+        let _ = std::fs::remove_file(path);
+    }
     let reader = ResultReader::open(folder).map_err(Failure::run)?;
     let camera = output
         .camera
@@ -52,7 +88,7 @@ pub(crate) fn after_run(
         wireframe: false,
     };
     let mut album = Album::open(&reader, look)?;
-    let picture = folder.join("final.png");
+    let picture = folder.join(PICTURE);
     album.picture(reader.len().saturating_sub(1), &picture)?;
     album.look.size = FILM_SIZE;
     let film = album.film_in_any_format(folder, quiet)?;
@@ -75,7 +111,7 @@ impl<'a> Album<'a> {
         let topology = Topology::new(reader);
         let (mut bounds, mut values) = (Bounds::EMPTY, Vec::new());
         for index in 0..reader.len() {
-            let frame = reader.frame(index).map_err(Failure::run)?;
+            let frame = reader.frame(index).map_err(Failure::result)?;
             if index == 0
                 && let Some(name) = &look.color
                 && frame.field(name).is_none()
@@ -116,11 +152,11 @@ impl<'a> Album<'a> {
     /// `film.mp4`, or `film.gif` where there is no ffmpeg.
     fn film_in_any_format(&self, folder: &Path, quiet: bool) -> Result<PathBuf, Failure> {
         let (stride, fps) = self.pace(MAX_FILM_FRAMES)?;
-        let mut path = folder.join("film.mp4");
+        let mut path = folder.join(FILMS[0]);
         let mut result = self.write_film(&path, stride, fps, quiet);
         if let Err(FilmFailure::Film(FilmError::FfmpegMissing | FilmError::Ffmpeg { .. })) = result
         {
-            path = folder.join("film.gif");
+            path = folder.join(FILMS[1]);
             result = self.write_film(&path, stride, fps, quiet);
         }
         match result {
@@ -183,7 +219,7 @@ impl<'a> Album<'a> {
     }
 
     fn draw(&self, index: usize, quality: Quality) -> Result<Image, Failure> {
-        let frame = self.reader.frame(index).map_err(Failure::input)?;
+        let frame = self.reader.frame(index).map_err(Failure::result)?;
         let caption = format!("t = {:.2} s", frame.time);
         let view = FrameView::new(&self.topology, frame, self.look.color.as_deref());
         let (width, height) = self.look.size;

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use crate::arguments::PlotArguments;
 use crate::failure::Failure;
 use crate::output::say;
+use crate::output_path;
 
 /// Draws the figures.
 pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
@@ -22,8 +23,9 @@ pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
         let message = format!("{}: a figure ends in .svg or .png", output.display());
         return Err(Failure::input(message));
     }
-    let reader = ResultReader::open(&arguments.result).map_err(Failure::input)?;
-    let lines = reader.stats().map_err(Failure::input)?;
+    let reader = ResultReader::open(&arguments.result).map_err(Failure::result)?;
+    output_path::check(&output)?;
+    let lines = reader.stats().map_err(Failure::result)?;
     if lines.is_empty() {
         let message = format!(
             "{} has no steps yet: there is nothing to plot",
@@ -31,7 +33,7 @@ pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
         );
         return Err(Failure::input(message));
     }
-    let is_over = reader.summary().map_err(Failure::input)?.is_some();
+    let is_over = reader.summary().map_err(Failure::result)?.is_some();
     let chart = chart(&reader.manifest().title, &lines, is_over);
     write(&chart, arguments.size, &output)?;
     if arguments.json {

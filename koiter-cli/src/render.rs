@@ -6,6 +6,8 @@ use serde_json::json;
 
 use crate::arguments::RenderArguments;
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
+use crate::output_path;
 use crate::pictures::{Album, Look};
 
 /// Makes a picture or a film.
@@ -23,7 +25,8 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<(), Failure> {
         );
         return Err(Failure::input(message));
     }
-    let reader = ResultReader::open(&arguments.result).map_err(Failure::input)?;
+    output_path::check(&arguments.output)?;
+    let reader = ResultReader::open(&arguments.result).map_err(Failure::result)?;
     let look = Look {
         size: arguments.size,
         camera: arguments.camera.unwrap_or_default(),
@@ -31,6 +34,11 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<(), Failure> {
         wireframe: arguments.wireframe,
     };
     let album = Album::open(&reader, look)?;
+    let words = format!("{} is not made", arguments.output.display());
+    Interrupt::watch().end_at_once(
+        words,
+        koiter_render::partial_files(&arguments.output).into(),
+    );
     if extension == "png" {
         let last = reader.len().saturating_sub(1);
         album.picture(arguments.frame.unwrap_or(last), &arguments.output)?;

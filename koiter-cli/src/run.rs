@@ -8,12 +8,11 @@ mod start;
 
 pub(crate) use start::start;
 
-use crate::output::{say, say_error};
+use crate::output::say;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use koiter::integrate::StepReport;
+use koiter::io::result::FolderLock;
 use koiter::scene::Scene;
 use koiter::scene::Simulation;
 use koiter::scene::model::Model;
@@ -21,6 +20,7 @@ use koiter::scene::spec::MAX_STEPS;
 
 use crate::arguments::RunArguments;
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::pictures;
 use crate::scene_source::load;
 use beginning::Beginning;
@@ -39,30 +39,37 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("results").join(&loaded.name));
-    let beginning = beginning::find(arguments, &folder, &loaded, num_steps)?;
-    if let Beginning::Finished(summary) = beginning {
-        return beginning::say_finished(arguments, &folder, &summary);
-    }
-    let mut simulation = start(&loaded.scene.model, arguments.debug_mesh.as_deref())?;
-    let interrupted = watch_for_interrupt();
-    let mut recorder = match beginning {
-        Beginning::Checkpoint(checkpoint) => {
+    let (simulation, mut recorder) = match beginning::find(arguments, &folder, &loaded, num_steps)?
+    {
+        Beginning::Finished(summary) => {
+            return beginning::say_finished(arguments, &folder, &loaded, &summary);
+        }
+        Beginning::Start(lock) => {
+            let simulation = start(&loaded.scene.model, arguments.debug_mesh.as_deref())?;
+            let lock = lock.map_or_else(|| FolderLock::create(&folder), Ok);
+            let lock = lock.map_err(recorder::writing)?;
+            let recorder = Recorder::create(lock, &loaded, &simulation, num_steps)?;
+            (simulation, recorder)
+        }
+        Beginning::Checkpoint(checkpoint, lock) => {
+            let mut simulation = start(&loaded.scene.model, arguments.debug_mesh.as_deref())?;
             simulation
                 .restore(&checkpoint.snapshot)
                 .map_err(|error| Failure::input(error).with_help(beginning::BEGIN_AGAIN))?;
             // A run that went further than it is now to go is not cut back.
-            let num_steps = num_steps.max(simulation.step_count());
-            Recorder::resume(&folder, &loaded, &simulation, num_steps, &checkpoint.totals)?
+            let end = num_steps.max(simulation.step_count());
+            let recorder = Recorder::resume(lock, &loaded, &simulation, end, &checkpoint.totals)?;
+            (simulation, recorder)
         }
-        _ => Recorder::create(&folder, &loaded, &simulation, num_steps)?,
     };
+    let interrupt = Interrupt::watch();
     let mut progress = Progress::new(num_steps, simulation.step_count(), arguments.quiet);
     let end = advance(
         simulation,
         num_steps,
         &mut recorder,
         &mut progress,
-        &interrupted,
+        &interrupt,
     );
     progress.finish();
     let summary_written = recorder.write_summary();
@@ -72,9 +79,12 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
             false => failure,
         });
     }
-    // All is saved: Ctrl-C now ends the program at once.
-    let interrupted = interrupted.swap(true, Ordering::Relaxed) && recorder.summary.interrupted;
-    let made = match arguments.no_film || interrupted {
+    // All is saved.
+    interrupt.end_at_once(
+        pictures::without_film(&folder),
+        pictures::partial_files(&folder),
+    );
+    let made = match arguments.no_film || recorder.summary.interrupted {
         true => Vec::new(),
         false => pictures::after_run(&folder, &loaded.scene.output, arguments.quiet)?,
     };
@@ -84,6 +94,11 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
     } else if !arguments.quiet {
         recorder.summary.print(&folder, &made);
     }
+    judge(&recorder, num_steps)
+}
+
+/// Whether the run did what it was asked.
+fn judge(recorder: &Recorder<'_>, num_steps: usize) -> Result<(), Failure> {
     if recorder.summary.interrupted {
         let message = format!(
             "interrupted after step {} of {num_steps}; the result up to there is whole",
@@ -98,7 +113,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         );
         let failure = Failure::run(message)
             .with_help("stats.jsonl has the diagnosis of each; try a smaller time.dt, or a larger solver.max_iterations");
-        return Err(tell_of_free_parts(failure, &loaded.scene.model));
+        return Err(tell_of_free_parts(failure, &recorder.scene.model));
     }
     Ok(())
 }
@@ -144,26 +159,12 @@ fn num_steps(scene: &Scene, until: Option<f64>) -> Result<usize, Failure> {
     }
 }
 
-/// The first Ctrl-C asks the run to end after the present step; the second ends the program.
-fn watch_for_interrupt() -> Arc<AtomicBool> {
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = interrupted.clone();
-    // Without a handler Ctrl-C ends the program at once, which leaves whole frames too.
-    let _ = ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(1);
-        }
-        say_error!("ending after this step, which saves the run; Ctrl-C again ends at once");
-    });
-    interrupted
-}
-
 fn advance(
     simulation: Simulation,
     num_steps: usize,
     recorder: &mut Recorder<'_>,
     progress: &mut Progress,
-    interrupted: &AtomicBool,
+    interrupt: &Interrupt,
 ) -> Result<(), Failure> {
     let mut simulation = simulation;
     for step in simulation.step_count() + 1..=num_steps {
@@ -177,7 +178,7 @@ fn advance(
                 return Err(Failure::run(error));
             }
         };
-        let stop = interrupted.load(Ordering::Relaxed);
+        let stop = interrupt.is_asked();
         recorder.record(&simulation, &report, stop || step == num_steps)?;
         progress.show(&report);
         if stop {

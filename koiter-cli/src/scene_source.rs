@@ -89,8 +89,12 @@ pub(crate) fn load(arguments: &SceneArguments) -> Result<LoadedScene, Failure> {
 /// The library knows neither the machine nor how to contradict it.
 fn tell_of_memory(error: SceneError, arguments: &SceneArguments) -> SceneError {
     match (error.kind, arguments.memory) {
-        (SceneErrorKind::TooLarge, None) => error
-            .with_help("make the mesh coarser; --memory 64GB, or another size, tries all the same"),
+        (SceneErrorKind::TooLarge, None) => error.with_help(
+            "the limit is what this machine has to spare; make the mesh coarser; --memory 64GB, or another size, tries all the same",
+        ),
+        (SceneErrorKind::TooLarge, Some(_)) => {
+            error.with_help("make the mesh coarser, or allow more with --memory")
+        }
         _ => error,
     }
 }
@@ -126,13 +130,16 @@ enum Meshes {
 
 fn find(argument: &str) -> Result<Found, Failure> {
     let path = Path::new(argument);
-    if path.is_dir() {
-        return read(&path.join("scene.toml"));
+    let shipped = SHIPPED.iter().find(|shipped| shipped.name == argument);
+    let scene = match path.is_dir() {
+        true => path.join("scene.toml"),
+        false => path.to_owned(),
+    };
+    // A folder of that name without a scene, such as the result of a run, does not hide a scene that ships.
+    if scene.exists() || (path.exists() && shipped.is_none()) {
+        return read(&scene);
     }
-    if path.exists() {
-        return read(path);
-    }
-    if let Some(shipped) = SHIPPED.iter().find(|shipped| shipped.name == argument) {
+    if let Some(shipped) = shipped {
         return Ok(Found {
             name: argument.to_owned(),
             display: format!("{argument}/scene.toml (shipped)"),

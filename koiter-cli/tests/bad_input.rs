@@ -314,7 +314,8 @@ fn a_scene_that_will_not_fit_into_memory_is_refused_with_the_estimate() {
     let words = [
         "1.0e7 triangles",
         "about 180.0 GB",
-        "8.0 GB are available",
+        "the limit is 8.0 GB",
+        "allow more with --memory",
         "coarser",
     ];
     assert_refused(&scene, &["--set", cells, "--memory", "8GB"], &words);
@@ -363,6 +364,88 @@ fn a_static_shell_that_nothing_holds_is_told_why_it_fails() {
     assert_eq!(status(&output), 1, "{text}");
     assert!(
         text.contains("nothing but contact holds shell 'cloth'"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_folder_without_a_scene_does_not_hide_a_shipped_one() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("sphere-drape")).unwrap();
+    let check = |name: &str| {
+        std::process::Command::new(env!("CARGO_BIN_EXE_koiter"))
+            .args(["check", name, "--set", "resolution=tiny"])
+            .current_dir(folder.path())
+            .output()
+            .unwrap()
+    };
+    assert_eq!(status(&check("sphere-drape")), 0);
+    assert_eq!(status(&check("./sphere-drape")), 2);
+}
+
+#[test]
+fn negative_numbers_are_answered_by_their_option() {
+    let output = koiter(&["run", "sphere-drape", "--until", "-1"]);
+    assert_eq!(status(&output), 2);
+    assert!(
+        stderr(&output).contains("--until must be a time larger than 0 s"),
+        "{}",
+        stderr(&output)
+    );
+    let output = koiter(&["render", "x", "-o", "a.png", "--frame", "-1"]);
+    assert!(status(&output) == 2 && !stderr(&output).contains("-- -1"));
+}
+
+#[test]
+fn numbers_can_be_read_whatever_their_size() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = write_scene(folder.path(), SCENE);
+    let words = ["about 32 triangles", "the limit is 1 MB"];
+    assert_refused(&scene, &["--memory", "1MB"], &words);
+    let sheet = b"v 0 0 0\nv 1e100 0 0\nv 1e100 1e100 0\nv 0 1e100 0\nf 1 2 3 4\n";
+    let scene = scene_of_mesh(folder.path(), "sheet.obj", sheet);
+    let output = koiter(&["check", &scene]);
+    let text = stderr(&output) + &stdout(&output);
+    assert!(!text.contains("0000000000"), "{text}");
+}
+
+#[test]
+fn a_place_where_no_file_can_be_has_status_2() {
+    let folder = tempfile::tempdir().unwrap();
+    run_small(folder.path(), &[]);
+    let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    std::fs::create_dir(folder.path().join("ex")).unwrap();
+    let cases: [(&[&str], &str); 4] = [
+        (
+            &["export", &at("out"), "--to", "obj", "-o", &at("ex")],
+            "is a folder",
+        ),
+        (
+            &["export", &at("out"), "--to", "obj", "-o", &at("no/x.obj")],
+            "there is no folder",
+        ),
+        (
+            &["render", &at("out"), "-o", &at("no/x.png")],
+            "there is no folder",
+        ),
+        (
+            &["plot", &at("out"), "-o", &at("no/x.svg")],
+            "there is no folder",
+        ),
+    ];
+    for (arguments, words) in cases {
+        let output = koiter(arguments);
+        let text = stderr(&output);
+        assert!(
+            status(&output) == 2 && text.contains(words),
+            "{arguments:?}: {text}"
+        );
+    }
+    assert!(!folder.path().join("ex.obj").exists());
+    std::fs::write(folder.path().join("out/stats.jsonl"), "no figures\n").unwrap();
+    let text = stderr(&koiter(&["plot", &at("out")]));
+    assert!(
+        text.contains("--restart") && !text.contains("delete"),
         "{text}"
     );
 }

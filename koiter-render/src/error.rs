@@ -73,7 +73,7 @@ pub enum RenderError {
 #[non_exhaustive]
 pub enum ImageError {
     /// The file cannot be written.
-    #[error("cannot write {}", path.display())]
+    #[error("cannot write {}: {source}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
@@ -81,7 +81,7 @@ pub enum ImageError {
         source: std::io::Error,
     },
     /// The PNG encoder refused the picture.
-    #[error("cannot encode {} as PNG", path.display())]
+    #[error("cannot write {} as PNG: {source}", path.display())]
     Png {
         /// The file.
         path: PathBuf,
@@ -153,7 +153,7 @@ pub enum FilmError {
     #[error("a film needs at least one frame")]
     NoFrames,
     /// A file cannot be written or read back.
-    #[error("cannot write {}", path.display())]
+    #[error("cannot write {}: {source}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
@@ -161,9 +161,9 @@ pub enum FilmError {
         source: std::io::Error,
     },
     /// The PNG encoder failed.
-    #[error("cannot encode a frame as PNG")]
+    #[error("cannot encode a frame as PNG: {0}")]
     Png(#[from] png::EncodingError),
     /// The GIF encoder failed.
-    #[error("cannot encode a frame as GIF")]
+    #[error("cannot encode a frame as GIF: {0}")]
     Gif(#[from] gif::EncodingError),
 }

@@ -175,6 +175,12 @@ pub fn contact_sheet(images: &[Image], columns: usize) -> Result<Image, ImageErr
     Ok(sheet)
 }
 
+/// What is left of a picture or film that was being written when the program was killed, if anything: a GIF has two files.
+pub fn partial_files(path: &Path) -> [PathBuf; 2] {
+    let partial = partial_name(path);
+    [partial.with_extension("encoded.gif"), partial]
+}
+
 /// The name of a file while it is being written: hidden, in the same folder, with the same extension.
 pub(crate) fn partial_name(path: &Path) -> PathBuf {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();

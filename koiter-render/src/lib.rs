@@ -60,7 +60,7 @@ pub use chart::{Chart, Panel, Series, Style};
 pub use color::{ColorMap, ColorMapParseError, Rgb};
 pub use error::{FilmError, ImageError, RenderError};
 pub use film::Film;
-pub use image::{Image, contact_sheet};
+pub use image::{Image, contact_sheet, partial_files};
 pub use options::{Background, ColorBy, Light, Quality, RenderOptions};
 pub use render::render;
 pub use scene::{Bounds, FieldView, Ground, PartKind, PartView, Scene};

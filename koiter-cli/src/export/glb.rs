@@ -23,7 +23,7 @@ pub(super) fn export(
     let vertex_colors = match &arguments.color {
         None => None,
         Some(name) => {
-            let frame = reader.frame(frames[0]).map_err(Failure::input)?;
+            let frame = reader.frame(frames[0]).map_err(Failure::result)?;
             Some(field_colors(reader, &frame, name)?)
         }
     };

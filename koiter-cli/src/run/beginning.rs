@@ -3,25 +3,28 @@
 use std::path::Path;
 
 use koiter::io::Checkpoint;
-use koiter::io::result::{ResultError, ResultReader};
+use koiter::io::result::{FolderLock, ResultReader};
 use koiter::scene::{Difference, Document, KEYS_OF_NO_STEP};
 use serde_json::Value;
 
+use super::recorder::writing;
 use crate::arguments::RunArguments;
 use crate::failure::Failure;
-use crate::output::{say, say_error};
+use crate::interrupt::Interrupt;
+use crate::output::{quoted, say, say_error};
+use crate::pictures;
 use crate::scene_source::LoadedScene;
 
 /// What a refused checkpoint leaves to do.
 pub(super) const BEGIN_AGAIN: &str =
     "--restart runs the scene from the beginning and replaces this result";
 
-/// Where a run begins.
+/// Where a run begins, with the lock of its folder if that is there.
 pub(super) enum Beginning {
     /// At time 0.
-    Start,
+    Start(Option<FolderLock>),
     /// Where an earlier run stopped.
-    Checkpoint(Box<Checkpoint>),
+    Checkpoint(Box<Checkpoint>, FolderLock),
     /// The result is complete: its summary.
     Finished(Value),
 }
@@ -33,29 +36,31 @@ pub(super) fn find(
     loaded: &LoadedScene,
     num_steps: usize,
 ) -> Result<Beginning, Failure> {
+    if !folder.is_dir() {
+        if arguments.resume {
+            begin_without_checkpoint(folder, arguments.quiet)?;
+        }
+        return Ok(Beginning::Start(None));
+    }
+    // Nothing is read while another run writes.
+    let lock = FolderLock::take(folder).map_err(writing)?;
     let checkpoint = Checkpoint::read(folder);
     if !arguments.resume {
-        return match checkpoint {
-            Ok(Some(checkpoint)) if !arguments.restart => {
-                refuse_to_replace(folder, loaded, &checkpoint).map(|()| Beginning::Start)
-            }
-            // What cannot be resumed is replaced like any other result.
-            _ => Ok(Beginning::Start),
-        };
+        if let Ok(Some(checkpoint)) = &checkpoint
+            && !arguments.restart
+        {
+            refuse_to_replace(folder, loaded, checkpoint)?;
+        }
+        // What cannot be resumed is replaced like any other result.
+        return Ok(Beginning::Start(Some(lock)));
     }
     let checkpoint = match checkpoint {
         Ok(Some(checkpoint)) => checkpoint,
         Ok(None) => {
-            if !arguments.quiet {
-                let folder = folder.display();
-                say_error!("{folder} has no checkpoint to resume from: beginning at the start");
-            }
-            return Ok(Beginning::Start);
+            begin_without_checkpoint(folder, arguments.quiet)?;
+            return Ok(Beginning::Start(Some(lock)));
         }
-        Err(error @ ResultError::Broken { .. }) => {
-            return Err(Failure::input(error).with_help(BEGIN_AGAIN));
-        }
-        Err(error) => return Err(Failure::run(error)),
+        Err(error) => return Err(Failure::input(error).with_help(BEGIN_AGAIN)),
     };
     if let Some(reason) = difference(loaded, &checkpoint) {
         let path = folder.join("checkpoint.bin");
@@ -67,27 +72,55 @@ pub(super) fn find(
     let summary = summary(folder).filter(|_| checkpoint.snapshot.state.step >= num_steps);
     Ok(match summary {
         Some(summary) => Beginning::Finished(summary),
-        None => Beginning::Checkpoint(Box::new(checkpoint)),
+        None => Beginning::Checkpoint(Box::new(checkpoint), lock),
     })
 }
 
-/// Hours of work are not replaced because `--resume` was forgotten; a scene that was changed begins anew.
+/// A run that was killed before its first checkpoint begins again, and says so; one that ended had a checkpoint, and its
+/// result is not replaced because that was lost.
+fn begin_without_checkpoint(folder: &Path, quiet: bool) -> Result<(), Failure> {
+    let shown = folder.display();
+    let reader = ResultReader::open(folder).ok();
+    let summary = reader.as_ref().and_then(|reader| reader.summary().ok()?);
+    let had_checkpoint = summary.is_some_and(|summary| {
+        summary["interrupted"] == true || summary["steps"] == summary["planned_steps"]
+    });
+    if had_checkpoint {
+        let message = format!("{shown} holds a result, but its checkpoint.bin is missing");
+        return Err(Failure::input(message).with_help(BEGIN_AGAIN));
+    }
+    match reader.map_or(0, |reader| reader.len()) {
+        0 if quiet => {}
+        0 => say_error!("{shown} has no checkpoint to resume from: beginning at the start"),
+        frames => log::warn!(
+            target: "koiter",
+            "{shown} has no checkpoint to resume from: beginning at the start, which replaces its {frames} frames"
+        ),
+    }
+    Ok(())
+}
+
+/// Hours of work are not replaced because `--resume` or a `--set` was forgotten.
 fn refuse_to_replace(
     folder: &Path,
     loaded: &LoadedScene,
     checkpoint: &Checkpoint,
 ) -> Result<(), Failure> {
     let interrupted = summary(folder).is_none_or(|summary| summary["interrupted"] == true);
-    if !interrupted || difference(loaded, checkpoint).is_some() {
+    if !interrupted {
         return Ok(());
     }
-    let message = format!(
-        "{} holds an interrupted run of this scene, saved after step {}",
-        folder.display(),
-        checkpoint.snapshot.state.step
-    );
-    Err(Failure::input(message)
-        .with_help("--resume goes on with it, --restart begins again and replaces it"))
+    let (folder, step) = (folder.display(), checkpoint.snapshot.state.step);
+    Err(match difference(loaded, checkpoint) {
+        None => Failure::input(format!(
+            "{folder} holds an interrupted run of this scene, saved after step {step}"
+        ))
+        .with_help("--resume goes on with it, --restart begins again and replaces it"),
+        Some(reason) => Failure::input(format!(
+            "{folder} holds an interrupted run, saved after step {step}, and not of this scene as it is: {reason}"
+        ))
+        .with_help("--resume with the scene and the --set values of that run goes on with it; --restart replaces it"),
+    })
 }
 
 fn summary(folder: &Path) -> Option<Value> {
@@ -141,18 +174,31 @@ fn describe(difference: &Difference) -> String {
     }
 }
 
-/// Tells that nothing is left to do.
+/// Tells that no step is left to do, and makes the pictures that are missing.
 pub(super) fn say_finished(
     arguments: &RunArguments,
     folder: &Path,
+    loaded: &LoadedScene,
     summary: &Value,
 ) -> Result<(), Failure> {
+    let made = match arguments.no_film || pictures::are_made(folder) {
+        true => Vec::new(),
+        false => {
+            Interrupt::watch().end_at_once(
+                pictures::without_film(folder),
+                pictures::partial_files(folder),
+            );
+            pictures::after_run(folder, &loaded.scene.output, arguments.quiet)?
+        }
+    };
     if arguments.json {
         say!("{summary}");
     } else if !arguments.quiet {
         let (steps, time) = (&summary["steps"], &summary["time"]);
         say!("finished already: {steps} steps to t = {time} s; --until T goes on to a later time");
         say!("result: {}", folder.display());
+        made.iter()
+            .for_each(|path| say!("made: {}", path.display()));
     }
     Ok(())
 }
@@ -169,25 +215,4 @@ pub(super) fn how_to_go_on() -> String {
         words.push("--resume".to_owned());
     }
     format!("go on with: koiter {}", words.join(" "))
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
-    match !word.is_empty() && word.chars().all(plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', r"'\''")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_are_quoted_where_a_shell_would_split_them() {
-        assert_eq!(quoted("--set"), "--set");
-        assert_eq!(quoted("gravity=[0, 1]"), "'gravity=[0, 1]'");
-        assert_eq!(quoted("it's"), r"'it'\''s'");
-    }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use koiter::integrate::StepReport;
 use koiter::io::result::Totals;
-use koiter::scene::SystemStats;
+use koiter::scene::{SystemStats, readable_bytes};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
@@ -173,7 +173,7 @@ impl Summary {
                 "{} vertices, {} triangles, {} at most",
                 self.vertices,
                 self.faces,
-                memory::readable(bytes)
+                readable_bytes(bytes as f64)
             );
         }
         if let Value::Object(probes) = &self.probes {

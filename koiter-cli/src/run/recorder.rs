@@ -1,10 +1,11 @@
 //! What a run writes while it goes on: frames, figures, probes, checkpoints, and its summary.
 
+use std::io::ErrorKind;
 use std::path::Path;
 use std::time::Instant;
 
 use koiter::integrate::{StepError, StepReport};
-use koiter::io::result::{Checkpoint, Field, Frame, ResultError, ResultWriter, Totals};
+use koiter::io::result::{Checkpoint, Field, FolderLock, Frame, ResultError, ResultWriter, Totals};
 use koiter::scene::{Scene, Simulation};
 
 use super::beginning::BEGIN_AGAIN;
@@ -31,13 +32,14 @@ pub(super) struct Recorder<'a> {
 
 impl<'a> Recorder<'a> {
     pub(super) fn create(
-        folder: &Path,
+        lock: FolderLock,
         loaded: &'a LoadedScene,
         simulation: &Simulation,
         num_steps: usize,
     ) -> Result<Self, Failure> {
         let (manifest, faces) = start::manifest(loaded, simulation);
-        let writer = ResultWriter::create(folder, &manifest, &faces).map_err(writing)?;
+        let writer = ResultWriter::create_locked(lock, &manifest, &faces).map_err(writing)?;
+        let folder = writer.folder();
         let probes = ProbeWriter::create(folder, &loaded.scene.probes)
             .map_err(|error| cannot_write(&folder.join("probes.csv"), error))?;
         let mut recorder = Self::new(loaded, simulation, num_steps, writer, probes);
@@ -48,7 +50,7 @@ impl<'a> Recorder<'a> {
 
     /// Goes on where a checkpoint was made: what was written after it is cut off, to be written again.
     pub(super) fn resume(
-        folder: &Path,
+        lock: FolderLock,
         loaded: &'a LoadedScene,
         simulation: &Simulation,
         num_steps: usize,
@@ -59,8 +61,8 @@ impl<'a> Recorder<'a> {
         let step = simulation.step_count();
         // The frame of an end that is no longer the end is not one of the regular ones: it goes too.
         let frames = 1 + step / scene.frame_steps;
-        let writer = ResultWriter::resume(folder, &manifest, frames, step).map_err(damaged)?;
-        let probes = ProbeWriter::resume(folder, &scene.probes, 1 + step, &totals.probes)
+        let writer = ResultWriter::resume_locked(lock, &manifest, frames, step).map_err(damaged)?;
+        let probes = ProbeWriter::resume(writer.folder(), &scene.probes, 1 + step, &totals.probes)
             .map_err(damaged)?;
         let mut recorder = Self::new(loaded, simulation, num_steps, writer, probes);
         recorder.seconds_before = totals.seconds;
@@ -198,7 +200,8 @@ impl<'a> Recorder<'a> {
     }
 }
 
-fn writing(error: ResultError) -> Failure {
+/// A folder that may not be written to is an input that is wrong, unless the system refused.
+pub(super) fn writing(error: ResultError) -> Failure {
     match error {
         ResultError::NotEmpty { .. } | ResultError::InUse { .. } => {
             Failure::input(error).with_help("choose another folder with --out")
@@ -210,6 +213,12 @@ fn writing(error: ResultError) -> Failure {
 /// A result that cannot be taken up again is an input that is wrong, unless the system refused.
 fn damaged(error: ResultError) -> Failure {
     match error {
+        // A file that is missing, or a folder in its place.
+        ResultError::Io { ref source, .. }
+            if matches!(source.kind(), ErrorKind::NotFound | ErrorKind::IsADirectory) =>
+        {
+            Failure::input(error).with_help(BEGIN_AGAIN)
+        }
         ResultError::Io { .. } | ResultError::InUse { .. } => writing(error),
         error => Failure::input(error).with_help(BEGIN_AGAIN),
     }

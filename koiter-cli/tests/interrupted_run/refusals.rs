@@ -206,3 +206,98 @@ fn an_interrupted_run_of_the_same_scene_is_replaced_only_when_asked() {
     bench.finish("out", &["--restart", "--until", "0.04"]);
     assert_eq!(EndState::of(&bench.path("out")).stats.len(), 2);
 }
+
+/// Rewrites the summary as a kill after the last checkpoint leaves it.
+fn mark_as_interrupted(bench: &Bench) {
+    let path = bench.path("out/summary.json");
+    let text = fs::read_to_string(&path).unwrap();
+    let marked = text.replace("\"interrupted\": false", "\"interrupted\": true");
+    assert_ne!(marked, text);
+    fs::write(path, marked).unwrap();
+}
+
+#[test]
+fn an_interrupted_run_of_other_settings_is_replaced_only_when_asked() {
+    let bench = begun();
+    mark_as_interrupted(&bench);
+    let text = refused(&bench, &["--set", "time.dt=0.01"]);
+    for words in [
+        "time.dt is 0.01 in this scene, but 0.02",
+        "--resume",
+        "--restart",
+    ] {
+        assert!(text.contains(words), "{text}");
+    }
+    bench.finish(
+        "out",
+        &["--set", "time.dt=0.01", "--until", "0.02", "--restart"],
+    );
+}
+
+#[test]
+fn a_lost_checkpoint_does_not_cost_a_result_and_frames_are_not_replaced_silently() {
+    let bench = begun();
+    fs::remove_file(bench.path("out/checkpoint.bin")).unwrap();
+    let text = refused(&bench, &["--resume", "--quiet"]);
+    assert!(
+        text.contains("checkpoint.bin is missing") && text.contains("--restart"),
+        "{text}"
+    );
+    // As a kill before the first checkpoint leaves it.
+    fs::remove_file(bench.path("out/summary.json")).unwrap();
+    let text = bench.finish("out", &["--resume", "--quiet", "--until", "0.04"]);
+    assert!(text.contains("replaces its 3 frames"), "{text}");
+}
+
+#[test]
+fn what_is_missing_or_a_folder_has_status_2_and_advice() {
+    let bench = begun();
+    fs::remove_file(bench.path("out/topology.bin")).unwrap();
+    let output = bench.run("out", &["--resume", "--until", "0.1"]);
+    assert_eq!(status(&output), 2, "{}", stderr(&output));
+    assert!(stderr(&output).contains("topology.bin") && stderr(&output).contains("--restart"));
+    fs::remove_file(bench.path("out/checkpoint.bin")).unwrap();
+    fs::create_dir(bench.path("out/checkpoint.bin")).unwrap();
+    let output = bench.run("out", &["--resume"]);
+    assert_eq!(status(&output), 2, "{}", stderr(&output));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_another_run_writes_to_is_refused_before_it_is_read() {
+    let bench = begun();
+    mark_as_interrupted(&bench);
+    let _lock = koiter::io::result::FolderLock::take(&bench.path("out")).unwrap();
+    for more in [&[][..], &["--resume"], &["--restart"]] {
+        let text = refused(&bench, more);
+        assert!(text.contains("another run is writing to out"), "{text}");
+    }
+}
+
+#[test]
+fn a_finished_run_without_its_pictures_gets_them() {
+    let bench = Bench::new();
+    bench.finish("out", &["--until", "0.04", "--quiet"]);
+    fs::write(bench.path("out/.film.partial.mp4"), "half").unwrap();
+    let resume = || {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_koiter"))
+            .args([
+                "run",
+                "scene.toml",
+                "--out",
+                "out",
+                "--until",
+                "0.04",
+                "--resume",
+            ])
+            .current_dir(bench.folder.path())
+            .output()
+            .unwrap();
+        assert_eq!(status(&output), 0, "{}", stderr(&output));
+        super::stdout(&output)
+    };
+    assert_eq!(resume().matches("made: ").count(), 2);
+    assert!(bench.path("out/final.png").exists());
+    assert!(!bench.path("out/.film.partial.mp4").exists());
+    assert_eq!(resume().matches("made: ").count(), 0);
+}

@@ -56,11 +56,13 @@ impl Film {
             .to_ascii_lowercase();
         let partial = partial_name(&path);
         let sink = match extension.as_str() {
-            "png" | "apng" => Sink::Png(apng::Writer::create(&partial, fps, width, height)?),
-            "gif" => Sink::Gif(Box::new(gif::Writer::create(&partial, fps, width, height)?)),
-            "mp4" => Sink::Mp4(mp4::Writer::create("ffmpeg", &partial, fps, width, height)?),
+            "png" | "apng" => apng::Writer::create(&partial, fps, width, height).map(Sink::Png),
+            "gif" => gif::Writer::create(&partial, fps, width, height)
+                .map(|writer| Sink::Gif(Box::new(writer))),
+            "mp4" => mp4::Writer::create("ffmpeg", &partial, fps, width, height).map(Sink::Mp4),
             _ => return Err(FilmError::Extension { path }),
         };
+        let sink = sink.map_err(|error| naming(&path, &partial, error))?;
         Ok(Self {
             path,
             partial,
@@ -83,12 +85,13 @@ impl Film {
                 expected: self.size,
             });
         }
-        match self.sink.as_mut() {
-            Some(Sink::Png(writer)) => writer.push(frame)?,
-            Some(Sink::Gif(writer)) => writer.push(frame)?,
-            Some(Sink::Mp4(writer)) => writer.push(frame)?,
-            None => {}
-        }
+        let pushed = match self.sink.as_mut() {
+            Some(Sink::Png(writer)) => writer.push(frame),
+            Some(Sink::Gif(writer)) => writer.push(frame),
+            Some(Sink::Mp4(writer)) => writer.push(frame),
+            None => Ok(()),
+        };
+        pushed.map_err(|error| naming(&self.path, &self.partial, error))?;
         self.frames += 1;
         Ok(())
     }
@@ -101,16 +104,31 @@ impl Film {
         if self.frames == 0 {
             return Err(FilmError::NoFrames);
         }
-        match self.sink.take() {
-            Some(Sink::Png(writer)) => writer.finish(self.frames as u32)?,
-            Some(Sink::Gif(writer)) => writer.finish()?,
-            Some(Sink::Mp4(writer)) => writer.finish()?,
-            None => {}
-        }
+        let finished = match self.sink.take() {
+            Some(Sink::Png(writer)) => writer.finish(self.frames as u32),
+            Some(Sink::Gif(writer)) => writer.finish(),
+            Some(Sink::Mp4(writer)) => writer.finish(),
+            None => Ok(()),
+        };
+        finished.map_err(|error| naming(&self.path, &self.partial, error))?;
         std::fs::rename(&self.partial, &self.path).map_err(|source| FilmError::Io {
             path: self.path.clone(),
             source,
         })
+    }
+}
+
+/// The user knows the film by its own name, not by the one it has while it is written.
+fn naming(path: &Path, partial: &Path, error: FilmError) -> FilmError {
+    match error {
+        FilmError::Io { source, .. } => FilmError::Io {
+            path: path.to_owned(),
+            source,
+        },
+        FilmError::Ffmpeg { message } => FilmError::Ffmpeg {
+            message: message.replace(&*partial.to_string_lossy(), &path.to_string_lossy()),
+        },
+        error => error,
     }
 }
 

@@ -15,6 +15,7 @@
 
 mod checkpoint;
 mod error;
+mod folder_lock;
 mod frame;
 mod manifest;
 mod reader;
@@ -23,6 +24,7 @@ mod writer;
 
 pub use checkpoint::{Checkpoint, CheckpointError, Totals};
 pub use error::ResultError;
+pub use folder_lock::FolderLock;
 pub use frame::{Field, Frame, FrameInfo};
 pub use manifest::{Manifest, Part, PartKind, UpAxis};
 pub use reader::{ResultReader, decode_stats};

@@ -77,15 +77,29 @@ fn check(shares: Vec<Share>, available: u64) -> Result<(), SceneError> {
     let largest = shares
         .into_iter()
         .max_by(|a, b| a.bytes.total_cmp(&b.bytes));
+    let faces = match faces < 1e5 {
+        true => format!("{faces:.0}"),
+        false => format!("{faces:.1e}"),
+    };
     let message = format!(
-        "the scene has about {faces:.1e} triangles and needs about {:.1} GB of memory; {:.1} GB are available",
-        total * 1e-9,
-        available as f64 * 1e-9
+        "the scene has about {faces} triangles and needs about {} of memory; the limit is {}",
+        readable_bytes(total),
+        readable_bytes(available as f64)
     );
     let path = largest.map_or(String::new(), |share| share.path);
     Err(SceneError::new(SceneErrorKind::TooLarge, message)
         .inside(&path)
         .with_help("make the mesh coarser"))
+}
+
+/// `1.5 GB` and the like; for what no machine has, `3.6e16 GB`.
+pub fn readable_bytes(bytes: f64) -> String {
+    match bytes {
+        b if b >= 1e15 => format!("{:.1e} GB", b * 1e-9),
+        b if b >= 1e9 => format!("{:.1} GB", b * 1e-9),
+        b if b >= 1e6 => format!("{:.0} MB", b * 1e-6),
+        b => format!("{:.0} kB", b * 1e-3),
+    }
 }
 
 /// Faces of a mesh that is generated; 0 for a file.
@@ -143,9 +157,22 @@ mod tests {
         assert_eq!(error.path, "shell.cloth.mesh");
         assert_eq!(
             error.message,
-            "the scene has about 1.0e7 triangles and needs about 180.0 GB of memory; 8.0 GB are available"
+            "the scene has about 1.0e7 triangles and needs about 180.0 GB of memory; the limit is 8.0 GB"
         );
         assert_eq!(error.location.unwrap().line(), 5);
+    }
+
+    #[test]
+    fn sizes_are_readable() {
+        let cases = [
+            (1.5e9, "1.5 GB"),
+            (20.4e6, "20 MB"),
+            (1e3, "1 kB"),
+            (3.6e34, "3.6e25 GB"),
+        ];
+        for (bytes, text) in cases {
+            assert_eq!(readable_bytes(bytes), text);
+        }
     }
 
     #[test]

@@ -54,6 +54,7 @@ pub use self::{
     build::Scene,
     document::{Difference, Document},
     error::{Location, SceneError, SceneErrorKind, Source, Warning},
+    memory::readable_bytes,
     nearest::nearest,
     placement::{MeshSource, NoFiles, UnreadableMesh},
     probe::{Observable, Probe, ProbeTarget},

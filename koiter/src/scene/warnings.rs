@@ -87,8 +87,11 @@ fn check_size(shell: &Shell, path: &str, mesh: &MeshSpec) -> Option<Warning> {
         "is the unit of the mesh right? Lengths are in metres".to_owned()
     } else if is_in_metres {
         format!(
-            "if the file is in millimetres ({:.3} m), write units = \"mm\"",
-            size * 1e-3
+            "if the file is in millimetres ({} m), write units = \"mm\"",
+            match size < 1e6 {
+                true => format!("{:.3}", size * 1e-3),
+                false => format!("{:.3e}", size * 1e-3),
+            }
         )
     } else {
         "is the unit of the mesh right?".to_owned()

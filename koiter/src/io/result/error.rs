@@ -56,7 +56,7 @@ pub enum ResultError {
         supported: u32,
     },
     /// A file of the result is damaged.
-    #[error("{} is broken: {reason}; run the scene again", path.display())]
+    #[error("{} is broken: {reason}", path.display())]
     Broken {
         /// The file.
         path: PathBuf,

@@ -1,17 +1,15 @@
 //! Writing a result folder.
 
-#[cfg(unix)]
-use std::fs::TryLockError;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Serialize;
 
 use super::error::{read_if_there, while_trying};
 use super::{
-    CHECKPOINT, Checkpoint, FRAMES, Frame, MANIFEST, Manifest, ResultError, ResultReader, STATS,
-    SUMMARY, TOPOLOGY, frame_path, topology_file,
+    CHECKPOINT, Checkpoint, FRAMES, FolderLock, Frame, MANIFEST, Manifest, ResultError,
+    ResultReader, STATS, SUMMARY, TOPOLOGY, frame_path, topology_file,
 };
 use crate::io::write_atomically;
 
@@ -21,12 +19,11 @@ const PROBES: &str = "probes.csv";
 /// Writes a result folder, frame by frame.
 #[derive(Debug)]
 pub struct ResultWriter {
-    folder: PathBuf,
+    lock: FolderLock,
     num_vertices: usize,
     num_faces: usize,
     num_frames: usize,
     stats: File,
-    _lock: Option<File>,
 }
 
 impl ResultWriter {
@@ -43,22 +40,31 @@ impl ResultWriter {
         manifest: &Manifest,
         faces: &[[u32; 3]],
     ) -> Result<Self, ResultError> {
+        Self::create_locked(FolderLock::create(folder)?, manifest, faces)
+    }
+
+    /// [`ResultWriter::create`] in a folder that is locked already.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn create_locked(
+        lock: FolderLock,
+        manifest: &Manifest,
+        faces: &[[u32; 3]],
+    ) -> Result<Self, ResultError> {
         manifest
             .check(faces)
             .map_err(|reason| ResultError::Invalid {
                 what: "manifest",
                 reason,
             })?;
-        fs::create_dir_all(folder).map_err(while_trying("create the folder", folder))?;
+        let folder = lock.folder();
         let is_empty = fs::read_dir(folder)
             .map_err(while_trying("list", folder))?
             .next()
             .is_none();
         if !is_empty {
             check_is_ours(folder)?;
-        }
-        let lock = lock(folder)?;
-        if !is_empty {
             clear_old_result(folder)?;
         }
         let frames = folder.join(FRAMES);
@@ -68,7 +74,7 @@ impl ResultWriter {
         let path = folder.join(TOPOLOGY);
         let bytes = topology_file::encode(manifest.num_vertices(), faces);
         write_atomically(&path, &bytes).map_err(while_trying("write", &path))?;
-        Self::open_at(folder, manifest, 0, lock)
+        Self::open_at(lock, manifest, 0)
     }
 
     /// Goes on with an interrupted run of the same parts: keeps the first `frames` frames and `stats` lines of figures,
@@ -83,7 +89,20 @@ impl ResultWriter {
         frames: usize,
         stats: usize,
     ) -> Result<Self, ResultError> {
-        let lock = lock(folder)?;
+        Self::resume_locked(FolderLock::take(folder)?, manifest, frames, stats)
+    }
+
+    /// [`ResultWriter::resume`] in a folder that is locked already.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn resume_locked(
+        lock: FolderLock,
+        manifest: &Manifest,
+        frames: usize,
+        stats: usize,
+    ) -> Result<Self, ResultError> {
+        let folder = lock.folder();
         let reader = ResultReader::open(folder)?;
         if reader.manifest().parts != manifest.parts {
             return Err(ResultError::Broken {
@@ -110,24 +129,22 @@ impl ResultWriter {
         remove_if_there(&folder.join(SUMMARY))?;
         // The scene may have got a later end.
         write_manifest(folder, manifest)?;
-        Self::open_at(folder, manifest, frames, lock)
+        Self::open_at(lock, manifest, frames)
     }
 
     fn open_at(
-        folder: &Path,
+        lock: FolderLock,
         manifest: &Manifest,
         num_frames: usize,
-        lock: Option<File>,
     ) -> Result<Self, ResultError> {
-        let path = folder.join(STATS);
+        let path = lock.folder().join(STATS);
         let stats = OpenOptions::new().create(true).append(true).open(&path);
         Ok(Self {
-            folder: folder.to_path_buf(),
             num_vertices: manifest.num_vertices(),
             num_faces: manifest.num_faces(),
             num_frames,
             stats: stats.map_err(while_trying("open", &path))?,
-            _lock: lock,
+            lock,
         })
     }
 
@@ -138,7 +155,7 @@ impl ResultWriter {
 
     /// The folder.
     pub fn folder(&self) -> &Path {
-        &self.folder
+        self.lock.folder()
     }
 
     /// Writes the next frame; it is on the disk when this returns.
@@ -152,7 +169,7 @@ impl ResultWriter {
                 what: "frame",
                 reason,
             })?;
-        let path = frame_path(&self.folder, self.num_frames);
+        let path = frame_path(self.folder(), self.num_frames);
         let bytes = frame.encode(self.num_faces);
         write_atomically(&path, &bytes).map_err(while_trying("write", &path))?;
         self.num_frames += 1;
@@ -164,7 +181,7 @@ impl ResultWriter {
     /// # Errors
     /// A refusal of the system.
     pub fn append_stats(&mut self, record: &impl Serialize) -> Result<(), ResultError> {
-        let path = self.folder.join(STATS);
+        let path = self.folder().join(STATS);
         let mut line = serde_json::to_string(record).map_err(|source| ResultError::Json {
             path: path.clone(),
             source,
@@ -181,11 +198,11 @@ impl ResultWriter {
     /// # Errors
     /// A refusal of the system; the checkpoint before is then still there.
     pub fn write_checkpoint(&self, checkpoint: &Checkpoint) -> Result<(), ResultError> {
-        let path = self.folder.join(STATS);
+        let path = self.folder().join(STATS);
         self.stats
             .sync_data()
             .map_err(while_trying("write", &path))?;
-        let path = self.folder.join(CHECKPOINT);
+        let path = self.folder().join(CHECKPOINT);
         write_atomically(&path, &checkpoint.to_bytes()).map_err(while_trying("write", &path))
     }
 
@@ -194,7 +211,7 @@ impl ResultWriter {
     /// # Errors
     /// A refusal of the system.
     pub fn write_summary(&self, summary: &impl Serialize) -> Result<(), ResultError> {
-        let path = self.folder.join(SUMMARY);
+        let path = self.folder().join(SUMMARY);
         let json = serde_json::to_string_pretty(summary).map_err(|source| ResultError::Json {
             path: path.clone(),
             source,
@@ -210,27 +227,6 @@ fn write_manifest(folder: &Path, manifest: &Manifest) -> Result<(), ResultError>
         source,
     })?;
     write_atomically(&path, json.as_bytes()).map_err(while_trying("write", &path))
-}
-
-/// Two runs that write to one folder would leave a mixture of both. The system drops the lock with the process, however
-/// that ends.
-#[cfg(unix)]
-fn lock(folder: &Path) -> Result<Option<File>, ResultError> {
-    let file = File::open(folder).map_err(while_trying("open", folder))?;
-    match file.try_lock() {
-        Ok(()) => Ok(Some(file)),
-        Err(TryLockError::WouldBlock) => Err(ResultError::InUse {
-            path: folder.to_path_buf(),
-        }),
-        // Some network file systems have no locks.
-        Err(TryLockError::Error(_)) => Ok(None),
-    }
-}
-
-/// Elsewhere folders cannot be opened as files.
-#[cfg(not(unix))]
-fn lock(_folder: &Path) -> Result<Option<File>, ResultError> {
-    Ok(None)
 }
 
 /// Refuses a folder with other content than a result.

@@ -241,7 +241,7 @@ fn every_kind_of_mistake_has_a_place_and_says_what_to_do() {
             "cells = [4000, 4000]",
             Kind::TooLarge,
             6,
-            "3.2e7 triangles and needs about 576.0 GB of memory; 1.0 GB are available | make the mesh coarser",
+            "3.2e7 triangles and needs about 576.0 GB of memory; the limit is 1.0 GB | make the mesh coarser",
         ),
     ];
     let mut seen = BTreeSet::new();
