@@ -40,6 +40,8 @@ impl ResultWriter {
         manifest: &Manifest,
         faces: &[[u32; 3]],
     ) -> Result<Self, ResultError> {
+        // Before the folder is made: a manifest that is refused leaves nothing behind.
+        check_manifest(manifest, faces)?;
         Self::create_locked(FolderLock::create(folder)?, manifest, faces)
     }
 
@@ -52,12 +54,7 @@ impl ResultWriter {
         manifest: &Manifest,
         faces: &[[u32; 3]],
     ) -> Result<Self, ResultError> {
-        manifest
-            .check(faces)
-            .map_err(|reason| ResultError::Invalid {
-                what: "manifest",
-                reason,
-            })?;
+        check_manifest(manifest, faces)?;
         let folder = lock.folder();
         let is_empty = fs::read_dir(folder)
             .map_err(while_trying("list", folder))?
@@ -218,6 +215,13 @@ impl ResultWriter {
         })?;
         write_atomically(&path, json.as_bytes()).map_err(while_trying("write", &path))
     }
+}
+
+fn check_manifest(manifest: &Manifest, faces: &[[u32; 3]]) -> Result<(), ResultError> {
+    (manifest.check(faces)).map_err(|reason| ResultError::Invalid {
+        what: "manifest",
+        reason,
+    })
 }
 
 fn write_manifest(folder: &Path, manifest: &Manifest) -> Result<(), ResultError> {
