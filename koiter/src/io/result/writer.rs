@@ -247,9 +247,9 @@ fn check_is_ours(folder: &Path) -> Result<(), ResultError> {
 
 /// Deletes what an old result consists of. The manifest stays until it is replaced.
 fn clear_old_result(folder: &Path) -> Result<(), ResultError> {
-    // The checkpoint first: what follows it is gone. Then the topology: without it a half-cleared result is not taken
-    // for a whole one.
-    for name in [CHECKPOINT, TOPOLOGY, SUMMARY, STATS, PROBES] {
+    // The summary first: without it nothing says that the run had ended. Then the checkpoint, since what follows it is
+    // gone, and the topology: without it a half-cleared result is not taken for a whole one.
+    for name in [SUMMARY, CHECKPOINT, TOPOLOGY, STATS, PROBES] {
         remove_if_there(&folder.join(name))?;
     }
     let frames = folder.join(FRAMES);
