@@ -7,7 +7,7 @@ use koiter::energy::bending::{
 };
 use koiter::geometry::{Wing, hinge_angle};
 use koiter::integrate::relax_directors;
-use koiter::material::StVenantKirchhoff;
+use koiter::material::{Homogeneous, StVenantKirchhoff};
 use koiter::mesh::{EdgeId, Surface, TriMesh};
 use koiter::rest::{RestFrame, rest_frames};
 use nalgebra::{Matrix3, Vector3};
@@ -20,7 +20,7 @@ const ROUND_OFF: f64 = 1e-12;
 /// Both codes stop their minimisation over directors when angles are found to about 1e-9.
 const DIRECTOR_TOLERANCE: f64 = 1e-7;
 
-type Bending<P> = Assembled<MidEdgeBending<P, StVenantKirchhoff>, 21, 9>;
+type Bending<P> = Assembled<MidEdgeBending<P, Homogeneous<StVenantKirchhoff>>, 21, 9>;
 
 fn numbers(value: &Value) -> Vec<f64> {
     match value {
@@ -128,8 +128,9 @@ impl Patch {
             .map(|k| self.data[k].as_f64().unwrap());
         let stencils = bending_stencils(&self.surface.mesh, Dof(0), self.angles);
         let material = StVenantKirchhoff::new(e, nu);
+        let section = Homogeneous::uniform(material, h, self.frames.len());
         Assembled::new(
-            MidEdgeBending::new(stencils, self.frames.clone(), rest_forms, h, material),
+            MidEdgeBending::new(stencils, self.frames.clone(), rest_forms, section),
             &self.layout,
         )
     }

@@ -7,7 +7,7 @@ use koiter::energy::bending::{
     AngleProfile, ClampedEdge, DirectorClamp, DiscreteShellsHinge, Identity, MidEdgeBending, Sine,
     Tangent, bending_stencils,
 };
-use koiter::material::StVenantKirchhoff;
+use koiter::material::{Homogeneous, StVenantKirchhoff};
 use koiter::mesh::{Surface, TriMesh};
 use koiter::rest::{RestFrame, rest_frames};
 use koiter::testing::{Claims, check};
@@ -82,29 +82,25 @@ fn patch(height: f64) -> Setup {
     )
 }
 
-fn material() -> StVenantKirchhoff {
-    StVenantKirchhoff::new(2.0, 0.3)
+fn section(s: &Setup) -> Homogeneous<StVenantKirchhoff> {
+    Homogeneous::uniform(StVenantKirchhoff::new(2.0, 0.3), THICKNESS, s.frames.len())
 }
 
-fn membrane(s: &Setup) -> Membrane<StVenantKirchhoff> {
-    Membrane::new(
-        &s.rest.mesh,
-        Dof(0),
-        s.frames.clone(),
-        THICKNESS,
-        material(),
-    )
+fn membrane(s: &Setup) -> Membrane<Homogeneous<StVenantKirchhoff>> {
+    Membrane::new(&s.rest.mesh, Dof(0), s.frames.clone(), section(s))
 }
 
 fn hinge(s: &Setup, curved: bool) -> DiscreteShellsHinge {
     DiscreteShellsHinge::new(&s.rest, Dof(0), &s.frames, curved, 0.7)
 }
 
-fn mid_edge<P: AngleProfile>(s: &Setup, curved: bool) -> MidEdgeBending<P, StVenantKirchhoff> {
+fn mid_edge<P: AngleProfile>(
+    s: &Setup,
+    curved: bool,
+) -> MidEdgeBending<P, Homogeneous<StVenantKirchhoff>> {
     let stencils = bending_stencils(&s.rest.mesh, Dof(0), s.edges);
     let zero = vec![Vector3::zeros(); s.rest.mesh.num_faces()];
-    let mut bending =
-        MidEdgeBending::<P, _>::new(stencils, s.frames.clone(), zero, THICKNESS, material());
+    let mut bending = MidEdgeBending::<P, _>::new(stencils, s.frames.clone(), zero, section(s));
     if curved {
         let gathered = Assembled::new(mid_edge::<P>(s, false), &s.layout);
         let form = |f| bending.second_form(f, &gathered.gather(f, &s.at_rest));
@@ -122,10 +118,12 @@ fn claims(s: &Setup, at_rest: bool) -> Claims {
 }
 
 fn check_mid_edge<P: AngleProfile>() {
-    let (s, m) = (patch(1.0), material());
+    let s = patch(1.0);
+    let section = section(&s);
     for curved in [false, true] {
-        let formula =
-            |e: &MidEdgeBending<P, _>, f: usize, q: &_| e.formula(f, q, m.lame_alpha, m.lame_beta);
+        let formula = |e: &MidEdgeBending<P, _>, f: usize, q: &_| {
+            e.formula(f, q, |change| section.bend_formula(f, change))
+        };
         check(
             mid_edge::<P>(&s, curved),
             &s.layout,
@@ -169,8 +167,11 @@ fn the_hinge_conforms() {
 
 #[test]
 fn the_membrane_conforms() {
-    let (s, m) = (patch(1.0), material());
-    let formula = |e: &Membrane<_>, f: usize, q: &_| e.formula(f, q, m.lame_alpha, m.lame_beta);
+    let s = patch(1.0);
+    let section = section(&s);
+    let formula = |e: &Membrane<_>, f: usize, q: &_| {
+        e.formula(f, q, |strain| section.stretch_formula(f, strain))
+    };
     check(membrane(&s), &s.layout, &s.q, formula, &claims(&s, true)).unwrap();
 }
 
@@ -210,7 +211,7 @@ fn the_director_clamp_conforms() {
 
 /// A membrane with one wrong entry in its gradient or in its Hessian.
 struct Planted {
-    honest: Membrane<StVenantKirchhoff>,
+    honest: Membrane<Homogeneous<StVenantKirchhoff>>,
     in_gradient: bool,
 }
 
@@ -249,8 +250,11 @@ impl LocalEnergy<9, 3> for Planted {
 
 #[test]
 fn a_planted_error_is_caught() {
-    let (s, m) = (patch(1.0), material());
-    let formula = |e: &Planted, f: usize, q: &_| e.honest.formula(f, q, m.lame_alpha, m.lame_beta);
+    let s = patch(1.0);
+    let section = section(&s);
+    let formula = |e: &Planted, f: usize, q: &_| {
+        (e.honest).formula(f, q, |strain| section.stretch_formula(f, strain))
+    };
     for (in_gradient, property) in [
         (true, "gradient equals that of dual numbers"),
         (false, "Hessian equals that of dual numbers"),

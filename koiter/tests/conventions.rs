@@ -8,7 +8,7 @@ use koiter::energy::bending::{
 };
 use koiter::geometry::{Wing, hinge_angle};
 use koiter::integrate::relax_directors;
-use koiter::material::StVenantKirchhoff;
+use koiter::material::{Homogeneous, StVenantKirchhoff};
 use koiter::mesh::generate::{GridDiagonals, grid, icosphere};
 use koiter::mesh::{EdgeId, FaceId, Surface, TriMesh};
 use koiter::rest::rest_frames;
@@ -202,8 +202,7 @@ fn cylinder_error<P: AngleProfile + 'static>(cells: usize) -> f64 {
         stencils,
         frames.clone(),
         flat,
-        1e-3,
-        StVenantKirchhoff::new(1.0, 0.3),
+        Homogeneous::uniform(StVenantKirchhoff::new(1.0, 0.3), 1e-3, frames.len()),
     );
     let mut bending = Assembled::new(bending, &layout);
     assert!(bending.value(&q) > 0.0);

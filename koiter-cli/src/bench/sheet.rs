@@ -9,7 +9,7 @@ use koiter::assembly::{
 };
 use koiter::energy::Membrane;
 use koiter::energy::bending::{MidEdgeBending, Tangent, bending_stencils};
-use koiter::material::StVenantKirchhoff;
+use koiter::material::{Homogeneous, StVenantKirchhoff};
 use koiter::mesh::generate::irregular;
 use koiter::rest::rest_frames;
 use nalgebra::Vector3;
@@ -47,6 +47,7 @@ impl Sheet {
         let first_edge = layout.push_nodes(mesh.num_edges(), 1, true);
         let frames = rest_frames(&surface).map_err(|error| Failure::input(error.to_string()))?;
         let material = StVenantKirchhoff::new(YOUNGS_MODULUS, POISSONS_RATIO);
+        let section = Homogeneous::uniform(material, THICKNESS, mesh.num_faces());
         let mut inertia = vec![0.0; layout.num_dofs()];
         for (face, frame) in mesh.faces().iter().zip(&frames) {
             for &v in face {
@@ -56,11 +57,10 @@ impl Sheet {
                 }
             }
         }
-        let membrane = Membrane::new(mesh, first_vertex, frames.clone(), THICKNESS, material);
+        let membrane = Membrane::new(mesh, first_vertex, frames.clone(), section.clone());
         let flat = vec![Vector3::zeros(); mesh.num_faces()];
         let stencils = bending_stencils(mesh, first_vertex, first_edge);
-        let bending =
-            MidEdgeBending::<Tangent, _>::new(stencils, frames, flat, THICKNESS, material);
+        let bending = MidEdgeBending::<Tangent, _>::new(stencils, frames, flat, section);
         let mut energies: [Box<dyn Energy>; 2] = [
             Box::new(Assembled::new(membrane, &layout)),
             Box::new(Assembled::new(bending, &layout)),

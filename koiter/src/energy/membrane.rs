@@ -1,11 +1,11 @@
 //! Koiter membrane on constant-strain triangles.
 //!
 //! ```text
-//! E = h Ā w(ε),   ε = (Fᵀ F − 1) / 2,   F = [x_j − x_i, x_k − x_i] D⁻¹
+//! E = Ā W(ε),   ε = (Fᵀ F − 1) / 2,   F = [x_j − x_i, x_k − x_i] D⁻¹
 //! ```
 //!
-//! h thickness [m], Ā rest area [m²], w density of the material [Pa], D the rest edges in an orthonormal basis
-//! ([`RestFrame`]). With St. Venant–Kirchhoff this is `(h/4) Ā (α/2 tr(S)² + β tr(S²))`, `S = Ī⁻¹(I − Ī)`. Reference:
+//! Ā rest area [m²], W energy of stretching per unit area of the [`Section`] [J/m²], D the rest edges in an orthonormal
+//! basis ([`RestFrame`]). For a St. Venant–Kirchhoff material of thickness h this is `(h/4) Ā (α/2 tr(S)² + β tr(S²))`, `S = Ī⁻¹(I − Ī)`. Reference:
 //! "Better Bending" (2026), Eqs. (4) and (22); the factor there is printed h/2, the strain is S/2.
 //!
 //! The Hessian splits exactly into motions in the plane of the face and out of it: out of the plane it is the stress
@@ -16,27 +16,20 @@ use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector3};
 use crate::Vec3;
 use crate::assembly::{Dof, LocalEnergy, LocalHessian, project_to_psd};
 use crate::geometry::Real;
-use crate::material::Material;
+use crate::material::{Response, Section};
 use crate::mesh::TriMesh;
 use crate::rest::RestFrame;
 
 /// Membrane energy of one shell.
-pub struct Membrane<M> {
+pub struct Membrane<S> {
     faces: Vec<[Dof; 3]>,
     frames: Vec<RestFrame>,
-    thickness: f64,
-    material: M,
+    section: S,
 }
 
-impl<M: Material> Membrane<M> {
+impl<S: Section> Membrane<S> {
     /// `first_vertex` is the first unknown of the shell's vertex 0; vertices have three unknowns each, in order.
-    pub fn new(
-        mesh: &TriMesh,
-        first_vertex: Dof,
-        frames: Vec<RestFrame>,
-        thickness: f64,
-        material: M,
-    ) -> Self {
+    pub fn new(mesh: &TriMesh, first_vertex: Dof, frames: Vec<RestFrame>, section: S) -> Self {
         let faces = mesh
             .faces()
             .iter()
@@ -45,8 +38,7 @@ impl<M: Material> Membrane<M> {
         Self {
             faces,
             frames,
-            thickness,
-            material,
+            section,
         }
     }
 
@@ -60,8 +52,10 @@ impl<M: Material> Membrane<M> {
         self.frames[face].deformation_gradient(&(corner(1) - corner(0)), &(corner(2) - corner(0)))
     }
 
-    fn volume(&self, face: usize) -> f64 {
-        self.thickness * self.frames[face].area
+    /// Energy, ∂E/∂ε and ∂²E/∂ε² of a face.
+    fn response(&self, face: usize, columns: &[Vec3; 2]) -> Response {
+        let response = self.section.stretch(face, &green_strain(columns));
+        response.scaled(self.frames[face].area)
     }
 
     fn gradient_from(
@@ -70,10 +64,9 @@ impl<M: Material> Membrane<M> {
         columns: &[Vec3; 2],
         stress: &Vector3<f64>,
     ) -> SVector<f64, 9> {
-        let volume = self.volume(face);
         let by_column = [
-            (columns[0] * stress.x + columns[1] * (0.5 * stress.z)) * volume,
-            (columns[1] * stress.y + columns[0] * (0.5 * stress.z)) * volume,
+            columns[0] * stress.x + columns[1] * (0.5 * stress.z),
+            columns[1] * stress.y + columns[0] * (0.5 * stress.z),
         ];
         let mut gradient = SVector::<f64, 9>::zeros();
         for (corner, weights) in self.frames[face].corner_weights().iter().enumerate() {
@@ -85,9 +78,8 @@ impl<M: Material> Membrane<M> {
 
     fn derivatives(&self, face: usize, q: &SVector<f64, 9>, kept: f64) -> LocalHessian<9> {
         let columns = self.columns(face, q);
-        let response = self.material.response(face, &green_strain(&columns));
-        let by_columns = hessian_by_columns(&columns, &response.stress, &response.tangent, kept)
-            * self.volume(face);
+        let response = self.response(face, &columns);
+        let by_columns = hessian_by_columns(&columns, &response.stress, &response.tangent, kept);
         let weights = self.frames[face].corner_weights();
         let mut hessian = SMatrix::<f64, 9, 9>::zeros();
         for a in 0..3 {
@@ -105,7 +97,7 @@ impl<M: Material> Membrane<M> {
             }
         }
         LocalHessian {
-            value: response.density * self.volume(face),
+            value: response.density,
             gradient: self.gradient_from(face, &columns, &response.stress),
             hessian,
         }
@@ -190,7 +182,7 @@ fn geometric_part(
     h
 }
 
-impl<M: Material> LocalEnergy<9, 3> for Membrane<M> {
+impl<S: Section> LocalEnergy<9, 3> for Membrane<S> {
     const NODE_SIZES: [usize; 3] = [3; 3];
 
     fn name(&self) -> &'static str {
@@ -206,15 +198,14 @@ impl<M: Material> LocalEnergy<9, 3> for Membrane<M> {
     }
 
     fn value(&self, stencil: usize, q: &SVector<f64, 9>) -> f64 {
-        let strain = green_strain(&self.columns(stencil, q));
-        self.material.response(stencil, &strain).density * self.volume(stencil)
+        self.response(stencil, &self.columns(stencil, q)).density
     }
 
     fn gradient(&self, stencil: usize, q: &SVector<f64, 9>) -> (f64, SVector<f64, 9>) {
         let columns = self.columns(stencil, q);
-        let response = self.material.response(stencil, &green_strain(&columns));
+        let response = self.response(stencil, &columns);
         (
-            response.density * self.volume(stencil),
+            response.density,
             self.gradient_from(stencil, &columns, &response.stress),
         )
     }
@@ -233,22 +224,19 @@ impl<M: Material> LocalEnergy<9, 3> for Membrane<M> {
 }
 
 /// The formula over any numbers: the oracle of the tests.
-impl<M> Membrane<M> {
-    /// E of one face for a St. Venant–Kirchhoff material with the given Lamé parameters.
-    pub fn formula<R: Real>(&self, face: usize, q: &[R; 9], lame_alpha: f64, lame_beta: f64) -> R {
+impl<S> Membrane<S> {
+    /// E of one face whose section has the density `density(ε)` [J/m²].
+    pub fn formula<R: Real>(&self, face: usize, q: &[R; 9], density: impl Fn([R; 3]) -> R) -> R {
         let [m11, m12, m22] = self.frames[face].inverse;
         let edge = |c: usize, axis: usize| q[3 * c + axis] - q[axis];
         let f1: [R; 3] = std::array::from_fn(|k| edge(1, k) * m11);
         let f2: [R; 3] = std::array::from_fn(|k| edge(1, k) * m12 + edge(2, k) * m22);
         let dot = |u: &[R; 3], v: &[R; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-        let (e11, e22, e12) = (
+        let strain = [
             (dot(&f1, &f1) - 1.0) * 0.5,
             (dot(&f2, &f2) - 1.0) * 0.5,
             dot(&f1, &f2) * 0.5,
-        );
-        let trace = e11 + e22;
-        let square = e11 * e11 + e22 * e22 + e12 * e12 * 2.0;
-        (trace * trace * (0.5 * lame_alpha) + square * lame_beta)
-            * (self.thickness * self.frames[face].area)
+        ];
+        density(strain) * self.frames[face].area
     }
 }

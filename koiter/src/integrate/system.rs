@@ -1,6 +1,7 @@
 //! Everything a step needs: unknowns, energies, masses, contact, and the workspace of the solver.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
@@ -11,6 +12,7 @@ use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::contact::{Contact, Friction};
 use crate::energy::bending::{BendingStencil, DirectorClamp, DirectorShape, curvatures, directors};
 use crate::energy::{Gravity, Inertia};
+use crate::material::Section;
 use crate::mesh::TriMesh;
 use crate::rest::RestFrame;
 use crate::solve::{
@@ -54,6 +56,8 @@ pub struct ShellPart {
     pub frames: Vec<RestFrame>,
     /// Thickness [m].
     pub thickness: f64,
+    /// What it resists with.
+    pub section: Arc<dyn Section>,
     /// Rest second fundamental forms in these frames, components `11, 22, 12` [1/m].
     pub rest_forms: Vec<Vector3<f64>>,
     /// How directors depend on tilts.

@@ -1,5 +1,7 @@
 //! From the shells of a model to their membranes, bending energies and masses.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 
 use super::assemble::{BuildError, Unknowns, write_points};
@@ -11,7 +13,7 @@ use crate::energy::bending::{
     bending_stencils,
 };
 use crate::integrate::{ShellPart, relax_directors};
-use crate::material::StVenantKirchhoff;
+use crate::material::{Homogeneous, Section, StVenantKirchhoff};
 use crate::mesh::Surface;
 use crate::rest::{RestError, rest_frames};
 
@@ -60,8 +62,7 @@ impl Elastic {
             &part.mesh,
             part.first_vertex,
             part.frames.clone(),
-            shell.thickness,
-            StVenantKirchhoff::new(shell.youngs_modulus, shell.poissons_ratio),
+            part.section.clone(),
         );
         self.energies
             .push(Box::new(Assembled::new(membrane, layout)));
@@ -101,6 +102,7 @@ fn shell_part(
         frames: rest_frames(&rest)?,
         rest_forms: vec![Vector3::zeros(); rest.mesh.num_faces()],
         thickness: shell.thickness,
+        section: section(shell),
         director_shape: director_shape(shell.bending).0,
         stencils: bending_stencils(
             &shell.surface.mesh,
@@ -108,6 +110,13 @@ fn shell_part(
             first_edge.unwrap_or(Dof(0)),
         ),
     })
+}
+
+/// What the shell resists with.
+fn section(shell: &Shell) -> Arc<dyn Section> {
+    let material = StVenantKirchhoff::new(shell.youngs_modulus, shell.poissons_ratio);
+    let num_faces = shell.surface.mesh.num_faces();
+    Arc::new(Homogeneous::uniform(material, shell.thickness, num_faces))
 }
 
 pub(super) fn rest_surface(shell: &Shell) -> Surface {
@@ -153,12 +162,11 @@ fn director_bending<P: AngleProfile + 'static>(
     q: &mut [f64],
     masses: &mut [f64],
 ) -> Result<Option<Box<dyn Energy>>, RestError> {
-    let material = StVenantKirchhoff::new(shell.youngs_modulus, shell.poissons_ratio);
     let num_faces = part.mesh.num_faces();
     let bending = |part: &ShellPart, forms| {
         let (stencils, frames) = (part.stencils.clone(), part.frames.clone());
         Assembled::new(
-            MidEdgeBending::<P, _>::new(stencils, frames, forms, shell.thickness, material),
+            MidEdgeBending::<P, _>::new(stencils, frames, forms, part.section.clone()),
             layout,
         )
     };
@@ -189,7 +197,7 @@ fn director_bending<P: AngleProfile + 'static>(
 fn add_director_inertia<P: AngleProfile>(
     shell: &Shell,
     part: &ShellPart,
-    bending: &Assembled<MidEdgeBending<P, StVenantKirchhoff>, 21, 9>,
+    bending: &Assembled<MidEdgeBending<P, Arc<dyn Section>>, 21, 9>,
     rest_q: &[f64],
     first_edge: Dof,
     masses: &mut [f64],

@@ -314,14 +314,11 @@ impl Simulation {
         ]
     }
 
-    /// `(h³/12) w(II)` of a face [J/m²] by the shown directors.
+    /// Bending energy per unit area of a face [J/m²] by the shown directors.
     fn bending_density(&self, shell: usize, face: usize) -> f64 {
-        let (part, spec) = (&self.system.space.shells[shell], &self.model.shells[shell]);
+        let part = &self.system.space.shells[shell];
         let form = part.second_form(face, &self.state.q) - part.rest_forms[face];
-        let material =
-            crate::material::StVenantKirchhoff::new(spec.youngs_modulus, spec.poissons_ratio);
-        let density = crate::material::Material::response(&material, face, &form).density;
-        spec.thickness.powi(3) / 12.0 * density
+        part.section.bend(face, &form).density
     }
 
     /// Sizes and costs.

@@ -1,17 +1,17 @@
 //! Koiter bending with mid-edge directors: DCS, DSO and BAC in one implementation.
 //!
 //! ```text
-//! E = (h³/12) Ā w(κ),    κ = D⁻ᵀ II D⁻¹ − b̄,    II = [[q₀ + q₁, q₀], [q₀, q₀ + q₂]],    q_c = 2 a_c g(ζ_c)
+//! E = Ā W(κ),    κ = D⁻ᵀ II D⁻¹ − b̄,    II = [[q₀ + q₁, q₀], [q₀, q₀ + q₂]],    q_c = 2 a_c g(ζ_c)
 //! ζ_c = θ_c / 2 + ε_c α_c
 //! ```
 //!
-//! h thickness [m], Ā rest area [m²], w density of the material [Pa], D rest edges ([`RestFrame`]), b̄ rest second
+//! Ā rest area [m²], W energy of bending per unit area of the [`Section`] [J/m²], D rest edges ([`RestFrame`]), b̄ rest second
 //! fundamental form in the same frame [1/m], a_c altitude over edge c [m], θ_c hinge angle, α_c edge angle, ε_c sign of
 //! the edge in the face, g the profile: sin (DCS), identity (DSO), tan (BAC). Boundary edges have θ = 0 and a free α.
 //! Reference: "Better Bending" (2026), Eqs. (30), (31), (48); `2 a = 4 A / ℓ` there.
 //!
 //! The unknowns are the corners, the opposite vertices of the three neighbours, and the three edge angles. The Hessian
-//! is `Jᵀ Q J + Σ σ_c ∇²q_c` with J = ∂q, Q the material's tangent and σ_c = ∂E/∂q_c; with the functionals of the two
+//! is `Jᵀ Q J + Σ σ_c ∇²q_c` with J = ∂q, Q the section's tangent and σ_c = ∂E/∂q_c; with the functionals of the two
 //! wings of an edge (own: N T M Ψ K, neighbour's: primed)
 //!
 //! ```text
@@ -30,7 +30,7 @@ use super::quadratic_form::{Functional, QuadraticForm, WIDTH, WingFunctionals, d
 use crate::Vec3;
 use crate::assembly::{Dof, LocalEnergy, LocalHessian};
 use crate::geometry::{Real, Wing, hinge_angle};
-use crate::material::Material;
+use crate::material::Section;
 use crate::mesh::{FaceId, TriMesh};
 use crate::rest::RestFrame;
 
@@ -152,30 +152,27 @@ impl Corner {
 }
 
 /// Koiter bending energy of one shell with profile `P`.
-pub struct MidEdgeBending<P, M> {
+pub struct MidEdgeBending<P, S> {
     stencils: Vec<BendingStencil>,
     frames: Vec<RestFrame>,
     rest_forms: Vec<Vector3<f64>>,
-    thickness: f64,
-    material: M,
+    section: S,
     profile: PhantomData<P>,
 }
 
-impl<P: AngleProfile, M: Material> MidEdgeBending<P, M> {
+impl<P: AngleProfile, S: Section> MidEdgeBending<P, S> {
     /// `rest_forms` are b̄ in the frames of the faces, components `11, 22, 12` [1/m].
     pub fn new(
         stencils: Vec<BendingStencil>,
         frames: Vec<RestFrame>,
         rest_forms: Vec<Vector3<f64>>,
-        thickness: f64,
-        material: M,
+        section: S,
     ) -> Self {
         Self {
             stencils,
             frames,
             rest_forms,
-            thickness,
-            material,
+            section,
             profile: PhantomData,
         }
     }
@@ -207,10 +204,6 @@ impl<P: AngleProfile, M: Material> MidEdgeBending<P, M> {
         Matrix3::from_fn(|i, j| rows[i][j])
     }
 
-    fn weight(&self, stencil: usize) -> f64 {
-        self.thickness.powi(3) / 12.0 * self.frames[stencil].area
-    }
-
     fn tilt(&self, stencil: usize, c: usize, q: &SVector<f64, 21>) -> (f64, Wing, Option<Wing>) {
         let point = |i: usize| Vec3::new(q[3 * i], q[3 * i + 1], q[3 * i + 2]);
         let (a, b) = (point((c + 1) % 3), point((c + 2) % 3));
@@ -239,13 +232,11 @@ impl<P: AngleProfile, M: Material> MidEdgeBending<P, M> {
     fn response(&self, stencil: usize, corners: &[Corner; 3]) -> (f64, Vector3<f64>, Matrix3<f64>) {
         let form = self.form_matrix(stencil);
         let curvatures = Vector3::from_fn(|c, _| corners[c].curvature());
-        let response = self
-            .material
-            .response(stencil, &(form * curvatures - self.rest_forms[stencil]));
-        let weight = self.weight(stencil);
-        let transposed = form.transpose() * weight;
+        let change = form * curvatures - self.rest_forms[stencil];
+        let response = (self.section.bend(stencil, &change)).scaled(self.frames[stencil].area);
+        let transposed = form.transpose();
         (
-            response.density * weight,
+            response.density,
             transposed * response.stress,
             transposed * response.tangent * form,
         )
@@ -301,13 +292,12 @@ impl<P: AngleProfile, M: Material> MidEdgeBending<P, M> {
         }
     }
 
-    /// E of one face over any numbers for a St. Venant–Kirchhoff material: the oracle of the tests.
+    /// E of one face over any numbers, whose section has the density `density(κ)` [J/m²]: the oracle of the tests.
     pub fn formula<R: Real>(
         &self,
         stencil: usize,
         q: &[R; 21],
-        lame_alpha: f64,
-        lame_beta: f64,
+        density: impl Fn([R; 3]) -> R,
     ) -> R {
         let face = &self.stencils[stencil];
         let point = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
@@ -333,9 +323,7 @@ impl<P: AngleProfile, M: Material> MidEdgeBending<P, M> {
             curvature[0] * rows[s][0] + curvature[1] * rows[s][1] + curvature[2] * rows[s][2]
                 - self.rest_forms[stencil][s]
         });
-        let trace = strain[0] + strain[1];
-        let square = strain[0] * strain[0] + strain[1] * strain[1] + strain[2] * strain[2] * 2.0;
-        (trace * trace * (0.5 * lame_alpha) + square * lame_beta) * self.weight(stencil)
+        density(strain) * self.frames[stencil].area
     }
 }
 
@@ -389,7 +377,7 @@ fn corner_form(corner: &Corner, moment: f64, kept: f64) -> (Functional, Quadrati
     (slope, form)
 }
 
-impl<P: AngleProfile, M: Material> LocalEnergy<21, 9> for MidEdgeBending<P, M> {
+impl<P: AngleProfile, S: Section> LocalEnergy<21, 9> for MidEdgeBending<P, S> {
     const NODE_SIZES: [usize; 9] = [3, 3, 3, 3, 3, 3, 1, 1, 1];
 
     fn name(&self) -> &'static str {
