@@ -2,7 +2,7 @@
 
 use crate::assembly::{ConfigurationSpace, Dof, DofLayout, Energy};
 use crate::rest::RestError;
-use crate::solve::{HessianChoice, LinearWorkspace, NewtonOptions, Problem, minimize};
+use crate::solve::{HessianChoice, LinearWorkspace, NewtonOptions, Problem, minimize_stably};
 
 /// Directors move by angles; the step is the largest of them [rad].
 struct Angles;
@@ -54,11 +54,9 @@ pub fn relax_directors(
         max_iterations: 100,
         hessian: HessianChoice::ExactWhereConvex,
     };
-    let report =
-        minimize(&mut problem, &options, &mut LinearWorkspace::default(), q).map_err(|error| {
-            RestError::Directors {
-                reason: error.to_string(),
-            }
+    let report = minimize_stably(&mut problem, &options, &mut LinearWorkspace::default(), q)
+        .map_err(|error| RestError::Directors {
+            reason: error.to_string(),
         })?;
     if report.converged {
         Ok(())

@@ -17,6 +17,7 @@ use crate::mesh::TriMesh;
 use crate::rest::RestFrame;
 use crate::solve::{
     HessianChoice, LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError, minimize,
+    minimize_stably,
 };
 
 /// Positions, edge angles and velocities at one time.
@@ -177,6 +178,12 @@ impl System {
         }
         energies.push(&mut self.clamps);
         energies.push(&mut self.gravity);
+        // Inertia holds a body on a saddle for the moment that a step takes; at rest it would not stay there.
+        let minimize = if inertia.is_some() {
+            minimize
+        } else {
+            minimize_stably
+        };
         if let Some(inertia) = inertia {
             energies.push(inertia);
         }

@@ -6,12 +6,16 @@ mod multifrontal;
 mod newton;
 mod ordering;
 mod pace;
+mod saddle;
 mod supernodal;
 mod workspace;
 
 pub use cholesky::{LinearSolver, NotPositiveDefinite, SparseCholesky};
 pub use multifrontal::Multifrontal;
-pub use newton::{HessianChoice, NewtonOptions, NewtonReport, Problem, SolveError, minimize};
+pub use newton::{
+    HessianChoice, NewtonOptions, NewtonReport, Problem, SolveError, minimize, minimize_stably,
+};
 pub use ordering::{EliminationOrder, NodeOrdering, nested_dissection};
+pub use saddle::leave_saddle;
 pub use supernodal::Supernodal;
 pub use workspace::{LinearWorkspace, WorkspaceHistory};

@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use super::line_search::{SearchLine, line_search};
 use super::pace::Pace;
+use super::saddle::leave_saddle;
 use super::workspace::LinearWorkspace;
 use crate::assembly::{ConfigurationSpace, DofLayout, Energy, HessianBuilder, PsdProjection};
 
@@ -70,11 +71,29 @@ pub struct NewtonReport {
     pub shifts: usize,
     /// Exact Hessians that were not positive definite.
     pub indefinite: usize,
+    /// Saddles that were left.
+    pub saddles: usize,
 }
 
 impl NewtonReport {
+    /// Continues the report of one minimisation with that of the next.
+    fn go_on(&mut self, next: Self) {
+        let before = std::mem::replace(self, next);
+        self.iterations += before.iterations;
+        self.line_search_steps += before.line_search_steps;
+        self.shifts += before.shifts;
+        self.indefinite += before.indefinite;
+        self.saddles += before.saddles + 1;
+        for (part, seconds) in before.seconds {
+            self.add_seconds(part, seconds);
+        }
+    }
+
     pub(super) fn spend(&mut self, part: &'static str, since: Instant) {
-        let seconds = since.elapsed().as_secs_f64();
+        self.add_seconds(part, since.elapsed().as_secs_f64());
+    }
+
+    fn add_seconds(&mut self, part: &'static str, seconds: f64) {
         match self.seconds.iter_mut().find(|(name, _)| *name == part) {
             Some((_, total)) => *total += seconds,
             None => self.seconds.push((part, seconds)),
@@ -104,7 +123,37 @@ pub enum SolveError {
     },
 }
 
-/// Moves `q` to a local minimum of the sum of energies.
+/// Saddles that are left before [`minimize_stably`] gives up: every one costs energy, so they come to an end, but no
+/// bound is known.
+const MAX_SADDLES: usize = 20;
+
+/// Moves `q` to a stable minimum: where [`minimize`] ends at a saddle, on along the direction of negative curvature.
+///
+/// # Errors
+/// As for [`minimize`].
+pub fn minimize_stably(
+    problem: &mut Problem<'_>,
+    options: &NewtonOptions,
+    workspace: &mut LinearWorkspace,
+    q: &mut [f64],
+) -> Result<NewtonReport, SolveError> {
+    let mut report = minimize(problem, options, workspace, q)?;
+    for _ in 0..MAX_SADDLES {
+        if !report.converged
+            || !leave_saddle(problem, workspace, options.tolerance, q, &mut report)?
+        {
+            break;
+        }
+        let remaining = NewtonOptions {
+            max_iterations: options.max_iterations.saturating_sub(report.iterations),
+            ..options.clone()
+        };
+        report.go_on(minimize(problem, &remaining, workspace, q)?);
+    }
+    Ok(report)
+}
+
+/// Moves `q` to a stationary point of the sum of energies, downhill.
 ///
 /// # Errors
 /// See [`SolveError`]. Reaching the iteration limit is told in the report.
@@ -295,7 +344,7 @@ fn assemble(
     Ok(rhs)
 }
 
-fn not_finite(energies: &[&mut dyn Energy], q: &[f64]) -> SolveError {
+pub(super) fn not_finite(energies: &[&mut dyn Energy], q: &[f64]) -> SolveError {
     for energy in energies {
         if let Some(worst) = energy
             .worst_element(q)

@@ -180,14 +180,15 @@ impl LinearWorkspace {
         };
         let matrix = self.matrix.as_mut().expect("the matrix was assembled");
         let pattern = Arc::clone(&matrix.pattern);
-        let mut applied = 0.0;
+        let positions = pattern.diagonal_positions();
+        let diagonal: Vec<f64> = (positions.iter())
+            .map(|&p| matrix.values[p as usize])
+            .collect();
         for (attempt, shift) in SHIFTS.iter().enumerate() {
-            let diagonal = pattern.diagonal_positions().iter().zip(is_fixed);
-            for (&position, _) in diagonal.filter(|(_, fixed)| !**fixed) {
-                let value = &mut matrix.values[position as usize];
-                *value = *value / (1.0 + applied) * (1.0 + shift);
+            for (dof, &position) in positions.iter().enumerate().filter(|(i, _)| !is_fixed[*i]) {
+                // An exact Hessian may have negative entries there.
+                matrix.values[position as usize] = diagonal[dof] + shift * diagonal[dof].abs();
             }
-            applied = *shift;
             match self.factor.factorize(matrix) {
                 Ok(()) => return Ok(attempt + 1),
                 Err(error) => failure = error.dof,

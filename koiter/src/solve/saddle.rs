@@ -1,0 +1,266 @@
+//! Leaving saddles: a stationary point is a minimum only if no direction has negative curvature.
+//!
+//! Newton's method is attracted by every stationary point. A plate that buckles, or a director on a sharp crease, is left
+//! standing at the symmetric state, which is a saddle there. [`leave_saddle`] looks at the exact Hessian H: where it is
+//! not positive definite, inverse iteration with `(H + S)⁻¹ S`, S the smallest multiple of the diagonal that makes
+//! `H + S` definite, turns any vector towards the direction v of most negative curvature, and the point is moved along v
+//! as long as the energy falls.
+
+use super::newton::{NewtonReport, Problem, SolveError, not_finite};
+use super::workspace::LinearWorkspace;
+use crate::assembly::{HessianBuilder, PsdProjection};
+
+/// Inverse iterations before the curvature counts as zero up to round-off. Each turns the vector towards v by the ratio
+/// of shifted eigenvalues; 3 to 10 were enough for buckling plates and for directors on creases.
+const MAX_TURNS: usize = 60;
+
+/// Doublings of the way along v: from 10 tolerances to far beyond any scene.
+const MAX_DOUBLINGS: usize = 50;
+
+/// Moves `q` off a saddle of the sum of energies; whether it was one. The first way along the direction of negative
+/// curvature has the length `tolerance` [m] times 10.
+///
+/// # Errors
+/// [`SolveError::NotFinite`].
+pub fn leave_saddle(
+    problem: &mut Problem<'_>,
+    workspace: &mut LinearWorkspace,
+    tolerance: f64,
+    q: &mut [f64],
+    report: &mut NewtonReport,
+) -> Result<bool, SolveError> {
+    let start = std::time::Instant::now();
+    for energy in &mut problem.energies {
+        energy.begin_iteration(q);
+    }
+    workspace.update_pattern(&mut problem.energies, problem.layout, q);
+    let gradient = assemble_exact(problem, workspace, q)?;
+    let direction = negative_direction(problem, workspace, &gradient);
+    report.spend("stability", start);
+    Ok(direction.is_some_and(|direction| descend(problem, tolerance, &direction, q)))
+}
+
+/// The exact Hessian into the workspace, with the rows of held unknowns taken out; returns the gradient.
+fn assemble_exact(
+    problem: &Problem<'_>,
+    workspace: &mut LinearWorkspace,
+    q: &[f64],
+) -> Result<Vec<f64>, SolveError> {
+    let solved = problem.layout.num_solved_dofs();
+    let mut gradient = vec![0.0; q.len()];
+    let (still, mut coupling) = (vec![0.0; q.len()], vec![0.0; solved]);
+    let matrix = workspace.matrix.as_mut().expect("the pattern was updated");
+    matrix.values.fill(0.0);
+    for energy in &problem.energies {
+        let mut hessian = HessianBuilder {
+            matrix: &mut *matrix,
+            layout: problem.layout,
+            prescribed_step: &still[solved..],
+            coupling: &mut coupling,
+        };
+        energy.add_derivatives(q, PsdProjection::Exact, &mut gradient, &mut hessian);
+    }
+    if gradient.iter().any(|g| !g.is_finite()) {
+        return Err(not_finite(&problem.energies, q));
+    }
+    matrix.fix(problem.is_fixed, &still[..solved], &mut coupling);
+    Ok(gradient)
+}
+
+/// A direction of negative curvature of the assembled Hessian along which the energy does not grow at first.
+fn negative_direction(
+    problem: &Problem<'_>,
+    workspace: &mut LinearWorkspace,
+    gradient: &[f64],
+) -> Option<Vec<f64>> {
+    workspace.factorize().err()?;
+    let diagonal = |workspace: &LinearWorkspace| -> Vec<f64> {
+        let matrix = workspace.matrix.as_ref().expect("the matrix was assembled");
+        let positions = matrix.pattern.diagonal_positions().iter();
+        positions.map(|&p| matrix.values[p as usize]).collect()
+    };
+    let before = diagonal(workspace);
+    workspace.factorize_shifted(problem.is_fixed).ok()?;
+    let shift: Vec<f64> = (diagonal(workspace).iter().zip(&before))
+        .map(|(shifted, original)| shifted - original)
+        .collect();
+    let matrix = workspace.matrix.as_ref().expect("the matrix was assembled");
+    // Any start with a share of every direction: the same one each time, so that runs can be repeated.
+    let mut v: Vec<f64> = (0..shift.len())
+        .map(|i| (((i as f64 + 1.0) * 0.618_033_988_749_895).fract() - 0.5) * free(problem, i))
+        .collect();
+    for _ in 0..MAX_TURNS {
+        v.iter_mut().zip(&shift).for_each(|(v, s)| *v *= s);
+        workspace.factor.solve(&mut v);
+        let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if !(norm > 0.0 && norm.is_finite()) {
+            return None;
+        }
+        v.iter_mut().for_each(|x| *x /= norm);
+        let curvature = |v: &[f64]| -> f64 {
+            let image = matrix.multiply(v);
+            (0..v.len())
+                .map(|i| v[i] * (image[i] - shift[i] * v[i]))
+                .sum()
+        };
+        if curvature(&v) < 0.0 {
+            let slope: f64 = gradient.iter().zip(&v).map(|(g, d)| g * d).sum();
+            let sign = if slope > 0.0 { -1.0 } else { 1.0 };
+            let mut direction = vec![0.0; gradient.len()];
+            (direction.iter_mut().zip(&v)).for_each(|(d, x)| *d = sign * x);
+            return Some(direction);
+        }
+    }
+    None
+}
+
+/// 0 for a held unknown.
+fn free(problem: &Problem<'_>, dof: usize) -> f64 {
+    if problem.is_fixed[dof] { 0.0 } else { 1.0 }
+}
+
+/// Goes along `direction` as long as doubling the way lowers the energy; whether it went anywhere.
+fn descend(problem: &mut Problem<'_>, tolerance: f64, direction: &[f64], q: &mut [f64]) -> bool {
+    let unit = problem.space.displacement(q, direction);
+    let mut way = 10.0 * tolerance / unit;
+    let value = |problem: &Problem<'_>, trial: &[f64]| -> f64 {
+        if problem.energies.iter().all(|e| e.is_admissible(trial)) {
+            problem.energies.iter().map(|e| e.value(trial)).sum()
+        } else {
+            f64::INFINITY
+        }
+    };
+    let mut best = (value(problem, q), None);
+    for _ in 0..MAX_DOUBLINGS {
+        let scaled: Vec<f64> = direction.iter().map(|d| d * way).collect();
+        let allowed = (problem.energies.iter_mut())
+            .map(|e| e.max_step(q, &scaled))
+            .fold(1.0, f64::min);
+        if allowed < 1.0 {
+            break;
+        }
+        let mut trial = vec![0.0; q.len()];
+        problem.space.retract(q, &scaled, &mut trial);
+        let energy = value(problem, &trial);
+        if energy < best.0 {
+            best = (energy, Some(trial));
+        } else if best.1.is_some() {
+            break;
+        }
+        way *= 2.0;
+    }
+    let Some(point) = best.1 else { return false };
+    q.copy_from_slice(&point);
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{SMatrix, SVector};
+
+    use super::*;
+    use crate::assembly::{
+        Assembled, ConfigurationSpace, Dof, DofLayout, LocalEnergy, LocalHessian,
+    };
+    use crate::solve::{HessianChoice, NewtonOptions, minimize, minimize_stably};
+
+    /// (x² − 1)² + y²: a saddle at the origin, minima at x = ±1.
+    struct DoubleWell;
+
+    impl LocalEnergy<2, 2> for DoubleWell {
+        const NODE_SIZES: [usize; 2] = [1; 2];
+        fn name(&self) -> &'static str {
+            "double well"
+        }
+        fn num_stencils(&self) -> usize {
+            1
+        }
+        fn nodes(&self, _: usize) -> [Option<Dof>; 2] {
+            [Some(Dof(0)), Some(Dof(1))]
+        }
+        fn value(&self, s: usize, q: &SVector<f64, 2>) -> f64 {
+            self.hessian(s, q).value
+        }
+        fn gradient(&self, s: usize, q: &SVector<f64, 2>) -> (f64, SVector<f64, 2>) {
+            let local = self.hessian(s, q);
+            (local.value, local.gradient)
+        }
+        fn hessian(&self, _: usize, q: &SVector<f64, 2>) -> LocalHessian<2> {
+            let (x, y) = (q[0], q[1]);
+            LocalHessian {
+                value: (x * x - 1.0).powi(2) + y * y,
+                gradient: SVector::from([4.0 * x * (x * x - 1.0), 2.0 * y]),
+                hessian: SMatrix::from([[12.0 * x * x - 4.0, 0.0], [0.0, 2.0]]),
+            }
+        }
+        fn projected_hessian(
+            &self,
+            stencil: usize,
+            q: &SVector<f64, 2>,
+            _kept: f64,
+        ) -> LocalHessian<2> {
+            let mut local = self.hessian(stencil, q);
+            local.hessian[(0, 0)] = local.hessian[(0, 0)].max(1.0);
+            local
+        }
+        fn describe(&self, _: usize) -> String {
+            String::new()
+        }
+    }
+
+    struct Plain;
+
+    impl ConfigurationSpace for Plain {
+        fn displacement(&self, _: &[f64], dq: &[f64]) -> f64 {
+            dq.iter().fold(0.0, |m, d| d.abs().max(m))
+        }
+        fn describe(&self, dof: usize) -> String {
+            format!("unknown {dof}")
+        }
+    }
+
+    /// Where both minimisations end from the same start, and the saddles that were left.
+    fn ends(start: [f64; 2], is_fixed: [bool; 2]) -> ([f64; 2], [f64; 2], usize) {
+        let mut layout = DofLayout::new();
+        layout.push_nodes(2, 1, true);
+        let mut energy = Assembled::new(DoubleWell, &layout);
+        let mut problem = Problem {
+            energies: vec![&mut energy],
+            layout: &layout,
+            space: &Plain,
+            is_fixed: &is_fixed,
+            target: &start,
+        };
+        let options = NewtonOptions {
+            tolerance: 1e-9,
+            max_iterations: 100,
+            hessian: HessianChoice::Projected,
+        };
+        let mut run = |stably: bool| {
+            let (mut q, mut workspace) = (start, LinearWorkspace::default());
+            let solve = if stably { minimize_stably } else { minimize };
+            let report = solve(&mut problem, &options, &mut workspace, &mut q).unwrap();
+            assert!(report.converged);
+            (q, report.saddles)
+        };
+        let (plain, _) = run(false);
+        let (stable, saddles) = run(true);
+        (plain, stable, saddles)
+    }
+
+    #[test]
+    fn a_saddle_is_left_for_a_minimum() {
+        let (plain, stable, saddles) = ends([0.0, 0.3], [false; 2]);
+        assert!(plain[0] == 0.0 && plain[1].abs() < 1e-9);
+        assert!((stable[0].abs() - 1.0).abs() < 1e-9 && stable[1].abs() < 1e-9);
+        assert_eq!(saddles, 1);
+    }
+
+    #[test]
+    fn a_minimum_and_a_held_saddle_are_kept() {
+        let (plain, stable, saddles) = ends([0.8, 0.3], [false; 2]);
+        assert_eq!((plain, saddles), (stable, 0));
+        let (_, held, saddles) = ends([0.0, 0.3], [true, false]);
+        assert_eq!((held[0], saddles), (0.0, 0));
+    }
+}
