@@ -34,6 +34,7 @@ fn main() {
         density: 500.0,
         youngs_modulus: 1e6,
         poissons_ratio: 0.3,
+        composition: Composition::default(),
         bending,
         friction: 0.4,
         contact_offset: 0.0,

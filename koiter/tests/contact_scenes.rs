@@ -26,6 +26,7 @@ fn cloth(width: f64, cells: usize, height: f64) -> Shell {
         density: 500.0,
         youngs_modulus: 1e6,
         poissons_ratio: 0.3,
+        composition: Composition::default(),
         bending: BendingModel::Bac,
         friction: 0.4,
         contact_offset: 0.0,

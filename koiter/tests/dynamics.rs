@@ -25,6 +25,7 @@ fn shell(surface: Surface, bending: BendingModel) -> Shell {
         density: 500.0,
         youngs_modulus: 1e6,
         poissons_ratio: 0.3,
+        composition: Composition::default(),
         bending,
         friction: 0.0,
         contact_offset: 0.0,

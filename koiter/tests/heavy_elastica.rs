@@ -91,6 +91,7 @@ fn hang(surface: Surface, bending: BendingModel, gamma: f64) -> [f64; 2] {
         density,
         youngs_modulus: YOUNGS_MODULUS,
         poissons_ratio: 0.0,
+        composition: Composition::default(),
         bending,
         friction: 0.0,
         contact_offset: 0.0,

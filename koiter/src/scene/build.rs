@@ -4,7 +4,7 @@ use super::document::Document;
 use super::error::{SceneError, SceneErrorKind as Kind, Warning};
 use super::memory;
 use super::model::{
-    Constraint, ContactOptions, Model, Obstacle, ObstacleShape, Shell, SolverOptions,
+    Composition, Constraint, ContactOptions, Model, Obstacle, ObstacleShape, Shell, SolverOptions,
 };
 use super::placement::{MeshSource, ShapeError, move_point, move_to, place, turn};
 use super::probe::{Probe, ProbeTarget, mean};
@@ -168,6 +168,7 @@ impl Builder<'_> {
             density: value(shell.material.density, |preset| preset.density),
             youngs_modulus: value(shell.material.young, |preset| preset.youngs_modulus),
             poissons_ratio: value(shell.material.poisson, |preset| preset.poissons_ratio),
+            composition: Composition::default(),
             bending: shell.bending,
             friction: shell.friction,
             contact_offset: shell.contact_thickness / 2.0,

@@ -13,7 +13,7 @@ use crate::energy::bending::{
     bending_stencils,
 };
 use crate::integrate::{ShellPart, relax_directors};
-use crate::material::{Homogeneous, Section, StVenantKirchhoff};
+use crate::material::Section;
 use crate::mesh::Surface;
 use crate::rest::{RestError, rest_frames};
 
@@ -102,7 +102,7 @@ fn shell_part(
         frames: rest_frames(&rest)?,
         rest_forms: vec![Vector3::zeros(); rest.mesh.num_faces()],
         thickness: shell.thickness,
-        section: section(shell),
+        section: shell.section(),
         director_shape: director_shape(shell.bending).0,
         stencils: bending_stencils(
             &shell.surface.mesh,
@@ -110,13 +110,6 @@ fn shell_part(
             first_edge.unwrap_or(Dof(0)),
         ),
     })
-}
-
-/// What the shell resists with.
-fn section(shell: &Shell) -> Arc<dyn Section> {
-    let material = StVenantKirchhoff::new(shell.youngs_modulus, shell.poissons_ratio);
-    let num_faces = shell.surface.mesh.num_faces();
-    Arc::new(Homogeneous::uniform(material, shell.thickness, num_faces))
 }
 
 pub(super) fn rest_surface(shell: &Shell) -> Surface {

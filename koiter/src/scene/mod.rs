@@ -7,6 +7,7 @@
 mod assemble;
 mod bending_models;
 mod clamps;
+mod composition;
 mod display;
 mod elastic;
 mod fingerprint;

@@ -3,6 +3,7 @@
 use crate::Vec3;
 use crate::mesh::VertexId;
 
+pub use super::composition::{Composition, MaterialLaw};
 pub use crate::mesh::Surface;
 
 /// Which second fundamental form (or hinge) a shell bends with.
@@ -48,6 +49,8 @@ pub struct Shell {
     pub youngs_modulus: f64,
     /// Poisson's ratio.
     pub poissons_ratio: f64,
+    /// Its law, where that is not isotropic St. Venant–Kirchhoff.
+    pub composition: Composition,
     /// Bending model.
     pub bending: BendingModel,
     /// Friction coefficient of the surface.
