@@ -57,7 +57,7 @@ pub(crate) fn models(arguments: &CatalogueArguments) -> Result<(), Failure> {
             json!({
                 "name": info.name,
                 "what": info.what,
-                "directors": info.has_directors,
+                "unknowns": info.unknowns.name(),
                 "source": (!info.source.is_empty()).then_some(info.source),
             })
         });
@@ -67,22 +67,22 @@ pub(crate) fn models(arguments: &CatalogueArguments) -> Result<(), Failure> {
         );
         return Ok(());
     }
-    say!("model     directors  what it is; source");
+    say!("model     unknowns          what it is; source");
     for model in BendingModel::ALL {
         let info = model.info();
-        let directors = if info.has_directors { "yes" } else { "no" };
+        let unknowns = info.unknowns.name();
         let remark = if model == default {
             " (the default)"
         } else {
             ""
         };
-        say!("{:9} {directors:9}  {}{remark}", info.name, info.what);
+        say!("{:9} {unknowns:16}  {}{remark}", info.name, info.what);
         if !info.source.is_empty() {
-            say!("{:20} {}", "", info.source);
+            say!("{:27} {}", "", info.source);
         }
     }
     say!(
-        "a shell names its model, as bending = \"dcs\". Directors are one unknown angle an edge. Sources: docs/references.bib"
+        "a shell names its model, as bending = \"dcs\". Unknowns are those beside the positions of the vertices. Sources: docs/references.bib"
     );
     Ok(())
 }

@@ -1,6 +1,8 @@
 //! The directors of a given surface: those that minimise its bending energy.
 
-use crate::assembly::{ConfigurationSpace, Dof, DofLayout, Energy};
+use std::ops::Range;
+
+use crate::assembly::{ConfigurationSpace, DofLayout, Energy};
 use crate::rest::RestError;
 use crate::solve::{HessianChoice, LinearWorkspace, NewtonOptions, Problem, minimize_stably};
 
@@ -20,17 +22,16 @@ impl ConfigurationSpace for Angles {
 /// Angles are found to this accuracy [rad]: the energy's error is its square.
 const TOLERANCE: f64 = 1e-10;
 
-/// Moves the `count` edge angles from `first` on to a minimum of `bending`; everything else in `q` stays.
+/// Moves the directors, the unknowns in `range`, to a minimum of `bending`; everything else in `q` stays.
 ///
 /// # Errors
 /// [`RestError::Directors`] if Newton's method does not converge.
 pub fn relax_directors(
     bending: &mut dyn Energy,
     layout: &DofLayout,
-    (first, count): (Dof, usize),
+    range: Range<usize>,
     q: &mut [f64],
 ) -> Result<(), RestError> {
-    let range = first.0 as usize..first.0 as usize + count;
     let mut gradient = vec![0.0; q.len()];
     bending.add_gradient(q, &mut gradient);
     if gradient[range.clone()].iter().all(|moment| *moment == 0.0) {

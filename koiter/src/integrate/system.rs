@@ -10,7 +10,9 @@ use super::report::{StepError, StepReport};
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::contact::{Contact, Friction};
-use crate::energy::bending::{BendingStencil, DirectorClamp, DirectorShape, curvatures, directors};
+use crate::energy::bending::{
+    BendingStencil, DirectorClamp, DirectorShape, ExtraUnknowns, curvatures, directors,
+};
 use crate::energy::{Gravity, Inertia};
 use crate::material::Section;
 use crate::mesh::TriMesh;
@@ -51,8 +53,10 @@ pub struct ShellPart {
     pub mesh: TriMesh,
     /// First unknown of vertex 0.
     pub first_vertex: Dof,
-    /// First unknown of edge 0, for models with directors.
-    pub first_edge: Option<Dof>,
+    /// What its bending model has as unknowns beside the positions of the vertices.
+    pub extra: ExtraUnknowns,
+    /// The first of them.
+    pub first_extra: Dof,
     /// Rest frames of the faces.
     pub frames: Vec<RestFrame>,
     /// Thickness [m].
@@ -72,6 +76,12 @@ impl ShellPart {
     pub fn vertex_dofs(&self) -> Range<usize> {
         let start = self.first_vertex.0 as usize;
         start..start + 3 * self.mesh.num_vertices()
+    }
+
+    /// The unknowns that the bending model adds.
+    pub fn extra_dofs(&self) -> Range<usize> {
+        let start = self.first_extra.0 as usize;
+        start..start + self.extra.num_nodes(&self.mesh) * self.extra.node_size()
     }
 
     /// Position of a vertex.

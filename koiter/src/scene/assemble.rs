@@ -1,7 +1,7 @@
 //! From a checked model to energies, masses and contact.
 
 use super::clamps::Clamps;
-use super::elastic::{Elastic, director_shape, rest_surface};
+use super::elastic::{Elastic, rest_surface};
 use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout};
@@ -120,14 +120,14 @@ pub(super) struct Unknowns {
     pub(super) layout: DofLayout,
     /// First vertex unknown of each shell.
     pub(super) vertices: Vec<Dof>,
-    /// First director angle of each shell whose bending model has them.
-    pub(super) edges: Vec<Option<Dof>>,
+    /// First of the extra unknowns of each shell's bending model.
+    pub(super) extras: Vec<Dof>,
     /// First unknown of each obstacle's points, and their positions at time 0.
     obstacles: Vec<(Dof, Vec<Vec3>)>,
 }
 
 impl Unknowns {
-    /// All vertices, then all directors, then the obstacles, whose motion is prescribed.
+    /// All vertices, then what the bending models add to them, then the obstacles, whose motion is prescribed.
     fn new(model: &Model) -> Self {
         let mut layout = DofLayout::new();
         let vertices = model
@@ -135,13 +135,12 @@ impl Unknowns {
             .iter()
             .map(|s| layout.push_nodes(s.surface.mesh.num_vertices(), 3, true))
             .collect();
-        let edges = model
+        let extras = model
             .shells
             .iter()
             .map(|s| {
-                director_shape(s.bending)
-                    .1
-                    .then(|| layout.push_nodes(s.surface.mesh.num_edges(), 1, true))
+                let extra = s.bending.info().unknowns;
+                layout.push_nodes(extra.num_nodes(&s.surface.mesh), extra.node_size(), true)
             })
             .collect();
         let obstacles = model
@@ -155,12 +154,12 @@ impl Unknowns {
         Self {
             layout,
             vertices,
-            edges,
+            extras,
             obstacles,
         }
     }
 
-    /// Positions and velocities at time 0; the directors are not known yet.
+    /// Positions and velocities at time 0; the extra unknowns are not known yet.
     fn start(&self, model: &Model) -> (Vec<f64>, Vec<f64>) {
         let mut q = vec![0.0; self.layout.num_dofs()];
         let mut velocities = q.clone();

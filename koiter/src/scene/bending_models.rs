@@ -1,6 +1,7 @@
 //! What is to be said of each bending model.
 
 use super::model::BendingModel;
+use crate::energy::bending::ExtraUnknowns;
 
 /// A bending model in words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,8 +10,8 @@ pub struct BendingModelInfo {
     pub name: &'static str,
     /// What it is, in a line.
     pub what: &'static str,
-    /// Whether it has an unknown angle on every edge beside the positions.
-    pub has_directors: bool,
+    /// What it has as unknowns beside the positions of the vertices.
+    pub unknowns: ExtraUnknowns,
     /// A key of docs/references.bib, and the equation; empty for the absence of a model.
     pub source: &'static str,
 }
@@ -25,31 +26,31 @@ impl BendingModel {
             Self::Bac => BendingModelInfo {
                 name: "bac",
                 what: "Bending-Active Cosserat: directors on edges, tangent profile; converges, and folds never close",
-                has_directors: true,
+                unknowns: ExtraUnknowns::EdgeAngles,
                 source: "better-bending-2026, Eq. 48",
             },
             Self::Dcs => BendingModelInfo {
                 name: "dcs",
                 what: "Discrete Cosserat shell: directors on edges, sine profile; converges, sharp folds lose their stiffness",
-                has_directors: true,
+                unknowns: ExtraUnknowns::EdgeAngles,
                 source: "better-bending-2026, Eq. 30",
             },
             Self::Dso => BendingModelInfo {
                 name: "dso",
                 what: "Discrete shape operator: directors on edges, profile the angle itself; converges",
-                has_directors: true,
+                unknowns: ExtraUnknowns::EdgeAngles,
                 source: "better-bending-2026, Eq. 31",
             },
             Self::DsTheta => BendingModelInfo {
                 name: "ds-theta",
                 what: "Discrete Shells hinge, quadratic in the angle: cheap, the familiar baseline; does not converge",
-                has_directors: false,
+                unknowns: ExtraUnknowns::None,
                 source: "better-bending-2026, Eq. 7, after grinspun-2003",
             },
             Self::None => BendingModelInfo {
                 name: "none",
                 what: "no bending energy: a pure membrane",
-                has_directors: false,
+                unknowns: ExtraUnknowns::None,
                 source: "",
             },
         }

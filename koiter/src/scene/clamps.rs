@@ -2,7 +2,7 @@
 
 use super::model::{Constraint, Model};
 use crate::Vec3;
-use crate::energy::bending::{ClampedEdge, DirectorClamp};
+use crate::energy::bending::{ClampedEdge, DirectorClamp, ExtraUnknowns};
 use crate::integrate::ShellPart;
 use crate::mesh::{EdgeId, FaceId};
 
@@ -24,7 +24,7 @@ pub(super) struct Clamps {
 }
 
 impl Clamps {
-    /// Edges between vertices whose three coordinates a clamping constraint holds, in shells with directors.
+    /// Edges between vertices whose three coordinates a clamping constraint holds, in shells with edge angles.
     pub(super) fn new(model: &Model, parts: &[ShellPart], q: &[f64]) -> (Self, DirectorClamp) {
         let mut sources = Vec::new();
         let mut edges = Vec::new();
@@ -32,7 +32,7 @@ impl Clamps {
             let (shell, part) = (&model.shells[constraint.shell], &parts[constraint.shell]);
             if !constraint.clamp_directors
                 || constraint.axes != [true; 3]
-                || part.first_edge.is_none()
+                || part.extra != ExtraUnknowns::EdgeAngles
             {
                 continue;
             }

@@ -37,9 +37,9 @@ impl Elastic {
             masses: vec![0.0; unknowns.layout.num_solved_dofs()],
             parts: Vec::new(),
         };
-        let firsts = unknowns.vertices.iter().zip(&unknowns.edges);
-        for (shell, (&first_vertex, &first_edge)) in model.shells.iter().zip(firsts) {
-            shell_part(shell, first_vertex, first_edge)
+        let firsts = unknowns.vertices.iter().zip(&unknowns.extras);
+        for (shell, (&first_vertex, &first_extra)) in model.shells.iter().zip(firsts) {
+            shell_part(shell, first_vertex, first_extra)
                 .and_then(|part| elastic.add(shell, part, &unknowns.layout, q))
                 .map_err(|error| BuildError::Rest {
                     shell: shell.name.clone(),
@@ -79,36 +79,29 @@ impl Elastic {
     }
 }
 
-/// How directors are shown, and whether the model has them as unknowns.
-pub(super) fn director_shape(bending: BendingModel) -> (DirectorShape, bool) {
+/// How the directors of edges depend on tilts.
+fn director_shape(bending: BendingModel) -> DirectorShape {
     match bending {
-        BendingModel::Bac => (DirectorShape::Tangent, true),
-        BendingModel::Dcs | BendingModel::Dso => (DirectorShape::Unit, true),
-        BendingModel::DsTheta | BendingModel::None => (DirectorShape::Bisector, false),
+        BendingModel::Bac => DirectorShape::Tangent,
+        BendingModel::Dcs | BendingModel::Dso => DirectorShape::Unit,
+        BendingModel::DsTheta | BendingModel::None => DirectorShape::Bisector,
     }
 }
 
-fn shell_part(
-    shell: &Shell,
-    first_vertex: Dof,
-    first_edge: Option<Dof>,
-) -> Result<ShellPart, RestError> {
+fn shell_part(shell: &Shell, first_vertex: Dof, first_extra: Dof) -> Result<ShellPart, RestError> {
     let rest = rest_surface(shell);
     Ok(ShellPart {
         name: shell.name.clone(),
         mesh: shell.surface.mesh.clone(),
         first_vertex,
-        first_edge,
+        extra: shell.bending.info().unknowns,
+        first_extra,
         frames: rest_frames(&rest)?,
         rest_forms: vec![Vector3::zeros(); rest.mesh.num_faces()],
         thickness: shell.thickness,
         section: shell.section(),
-        director_shape: director_shape(shell.bending).0,
-        stencils: bending_stencils(
-            &shell.surface.mesh,
-            first_vertex,
-            first_edge.unwrap_or(Dof(0)),
-        ),
+        director_shape: director_shape(shell.bending),
+        stencils: bending_stencils(&shell.surface.mesh, first_vertex, first_extra),
     })
 }
 
@@ -163,23 +156,21 @@ fn director_bending<P: AngleProfile + 'static>(
             layout,
         )
     };
-    let first_edge = part.first_edge.expect("director models have edge unknowns");
-    let angles = (first_edge, part.mesh.num_edges());
+    let angles = part.extra_dofs();
     let flat = vec![Vector3::zeros(); num_faces];
     let mut rest_q = q.to_vec();
     write_points(&mut rest_q, part.first_vertex, &shell.rest_positions);
     let mut at_rest = bending(part, flat);
-    relax_directors(&mut at_rest, layout, angles, &mut rest_q)?;
+    relax_directors(&mut at_rest, layout, angles.clone(), &mut rest_q)?;
     if shell.rest_curved {
         part.rest_forms = (0..num_faces)
             .map(|f| at_rest.local().second_form(f, &at_rest.gather(f, &rest_q)))
             .collect();
     }
-    add_director_inertia(shell, part, &at_rest, &rest_q, first_edge, masses);
+    add_director_inertia(shell, part, &at_rest, &rest_q, masses);
     let mut energy = bending(part, part.rest_forms.clone());
     // From the rest directors: where the start shape is the rest shape this is the exact minimum, round-off included.
-    let range = first_edge.0 as usize..first_edge.0 as usize + part.mesh.num_edges();
-    q[range.clone()].copy_from_slice(&rest_q[range]);
+    q[angles.clone()].copy_from_slice(&rest_q[angles.clone()]);
     if shell.surface.positions != shell.rest_positions || !shell.rest_curved {
         relax_directors(&mut energy, layout, angles, q)?;
     }
@@ -192,7 +183,6 @@ fn add_director_inertia<P: AngleProfile>(
     part: &ShellPart,
     bending: &Assembled<MidEdgeBending<P, Arc<dyn Section>>, 21, 9>,
     rest_q: &[f64],
-    first_edge: Dof,
     masses: &mut [f64],
 ) {
     let scale = shell.density * shell.thickness.powi(3) / 12.0;
@@ -201,7 +191,7 @@ fn add_director_inertia<P: AngleProfile>(
             .local()
             .director_inertia(face, &bending.gather(face, rest_q));
         for (edge, share) in part.mesh.face_edges()[face].iter().zip(shares) {
-            masses[(first_edge.0 + edge.0) as usize] += scale * share;
+            masses[(part.first_extra.0 + edge.0) as usize] += scale * share;
         }
     }
 }

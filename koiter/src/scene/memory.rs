@@ -4,10 +4,12 @@ use super::error::{SceneError, SceneErrorKind};
 use super::model::{BendingModel, Model, ObstacleShape};
 use super::simulation::{BYTES_A_DOF, PROGRAM_BYTES};
 use super::spec::{MeshSpec, ObstacleSpec, SceneSpec, ShellSpec};
+use crate::energy::bending::ExtraUnknowns;
 use crate::mesh::generate::face_count;
 
-/// Unknowns a face: half a vertex with three, and one and a half edges with one each where the model has directors.
-const DOFS_A_FACE: [f64; 2] = [1.5, 3.0];
+/// Vertices and edges a face.
+const VERTICES_A_FACE: f64 = 0.5;
+const EDGES_A_FACE: f64 = 1.5;
 /// Topology, collision mesh and trees of a face that is not solved for.
 const BYTES_AN_OBSTACLE_FACE: f64 = 1_000.0;
 
@@ -51,11 +53,17 @@ pub(super) fn check_model(model: &Model, available: u64) -> Result<(), SceneErro
 }
 
 fn shell_share(name: &str, bending: BendingModel, faces: f64) -> Share {
-    let has_directors = !matches!(bending, BendingModel::DsTheta | BendingModel::None);
+    let extra = bending.info().unknowns;
+    let extra_nodes = match extra {
+        ExtraUnknowns::None => 0.0,
+        ExtraUnknowns::VertexDirectors => VERTICES_A_FACE,
+        ExtraUnknowns::EdgeAngles | ExtraUnknowns::EdgePoints => EDGES_A_FACE,
+    };
+    let dofs_a_face = 3.0 * VERTICES_A_FACE + extra_nodes * extra.node_size() as f64;
     Share {
         path: format!("shell.{name}.mesh"),
         faces,
-        bytes: faces * DOFS_A_FACE[usize::from(has_directors)] * BYTES_A_DOF as f64,
+        bytes: faces * dofs_a_face * BYTES_A_DOF as f64,
     }
 }
 

@@ -6,6 +6,7 @@ use super::display::{PartTopology, tessellate};
 use super::model::{IntegratorKind, Model};
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, Energy};
+use crate::energy::bending::ExtraUnknowns;
 use crate::integrate::{
     ImplicitEuler, Integrator, Prescribed, QuasiStatic, State, StepError, StepReport, System,
 };
@@ -203,12 +204,10 @@ impl Simulation {
             .collect()
     }
 
-    /// Edge angles of a shell [rad]; empty for models without directors.
-    pub fn edge_angles(&self, shell: usize) -> Vec<f64> {
+    /// The unknowns of a shell beside the positions of its vertices: see [`ExtraUnknowns`].
+    pub fn extra_unknowns(&self, shell: usize) -> (ExtraUnknowns, &[f64]) {
         let part = &self.system.space.shells[shell];
-        part.first_edge.map_or_else(Vec::new, |first| {
-            self.state.q[first.0 as usize..first.0 as usize + part.mesh.num_edges()].to_vec()
-        })
+        (part.extra, &self.state.q[part.extra_dofs()])
     }
 
     /// Total force that a constraint exerts on its vertices [N], friction of contact left out.

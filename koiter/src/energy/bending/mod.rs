@@ -1,12 +1,14 @@
 //! Bending models.
 
 mod director_clamp;
+mod extra_unknowns;
 mod hinge;
 mod mid_edge;
 mod profile;
 mod quadratic_form;
 
 pub use director_clamp::{ClampedEdge, DirectorClamp};
+pub use extra_unknowns::ExtraUnknowns;
 pub use hinge::DiscreteShellsHinge;
 pub use mid_edge::{
     BendingStencil, DirectorShape, MidEdgeBending, bending_stencils, curvatures, directors,
