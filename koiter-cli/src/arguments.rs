@@ -69,7 +69,7 @@ and others) complete its keys and mark mistakes.")]
 #[derive(Debug, Args)]
 #[command(after_help = "\
 SCENE is a scene.toml, a folder that holds one, or a scene that ships with Koiter:
-  sphere-drape, drape-n, cantilever, hanging-sheet, v-beam, your-own-mesh
+  sphere-drape, drape-n, cantilever, hanging-sheet, v-beam, lateral-buckling, your-own-mesh
 
 Examples:
   koiter run sphere-drape
@@ -251,7 +251,8 @@ Examples:
   koiter bench assembly
   koiter bench solve --faces 40000 --repeats 5
   koiter bench contact --json
-  koiter bench drape --n 35,70 --bending bac --threads 1")]
+  koiter bench drape --n 35,70 --bending bac --threads 1
+  koiter bench lateral-buckling --models bac --cells 50 --plot pictures")]
 pub(crate) struct BenchArguments {
     #[command(subcommand)]
     pub(crate) subject: BenchSubject,
@@ -270,6 +271,8 @@ pub(crate) enum BenchSubject {
     Contact(SizeArguments),
     /// Whole steps of the scene drape-n
     Drape(DrapeArguments),
+    /// When a heavy plate that stands on edge buckles sideways: "Better Bending", Figure 26
+    LateralBuckling(LateralBucklingArguments),
 }
 
 #[derive(Debug, Args)]
@@ -296,6 +299,41 @@ pub(crate) struct DrapeArguments {
     /// Numbers of threads [default: one, and all cores]
     #[arg(long, value_delimiter = ',')]
     pub(crate) threads: Vec<usize>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LateralBucklingArguments {
+    /// Bending models
+    #[arg(
+        long,
+        value_delimiter = ',',
+        default_value = "bac,dcs,ds-theta,qb-pl,qb-cr"
+    )]
+    pub(crate) models: Vec<String>,
+    /// Widths of the plate over its length
+    #[arg(long, value_delimiter = ',', default_value = "0.1,0.5,0.9", value_parser = parse_width)]
+    pub(crate) widths: Vec<f64>,
+    /// Loads Γ* = 12 (1 − ν²) ρ g L³ / (E h²), growing
+    #[arg(long, value_delimiter = ',', default_value = "10,12.5,15,17.5,20,22.5,25,27.5,30,32.5,35,37.5,40", value_parser = parse_load)]
+    pub(crate) loads: Vec<f64>,
+    /// Edges along the plate; 100 is the mesh "Res++" of Romero et al.
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u16).range(4..=1000))]
+    pub(crate) cells: u16,
+    /// Draw the curves into this folder, as SVG and PNG
+    #[arg(long, value_name = "DIR")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+fn parse_width(text: &str) -> Result<f64, String> {
+    (text.parse().ok())
+        .filter(|width| (0.01..=2.0).contains(width))
+        .ok_or_else(|| "write a width over length from 0.01 to 2".into())
+}
+
+fn parse_load(text: &str) -> Result<f64, String> {
+    (text.parse().ok())
+        .filter(|load: &f64| *load > 0.0 && load.is_finite())
+        .ok_or_else(|| "write a load above 0".into())
 }
 
 /// Largest meshes of benchmarks: 4 GB of matrix.

@@ -19,3 +19,13 @@ pub(crate) fn check(path: &Path) -> Result<(), Failure> {
         _ => Ok(()),
     }
 }
+
+/// Makes a folder for pictures, and those above it.
+pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(path).map_err(|error| {
+        Failure::input(format!(
+            "cannot make the folder {}: {error}",
+            path.display()
+        ))
+    })
+}

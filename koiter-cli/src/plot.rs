@@ -48,7 +48,12 @@ pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn write(chart: &Chart, (width, height): (u32, u32), path: &Path) -> Result<(), Failure> {
+/// Writes a chart as SVG or PNG, by the ending of the path.
+pub(crate) fn write(
+    chart: &Chart,
+    (width, height): (u32, u32),
+    path: &Path,
+) -> Result<(), Failure> {
     if path
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))

@@ -48,6 +48,11 @@ const SHIPPED: &[Shipped] = &[
         meshes: &[],
     },
     Shipped {
+        name: "lateral-buckling",
+        text: include_str!("../../scenes/lateral-buckling/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
         name: "your-own-mesh",
         text: include_str!("../../scenes/your-own-mesh/scene.toml"),
         meshes: &[(
@@ -71,13 +76,19 @@ pub(crate) struct LoadedScene {
 
 /// Finds, reads and checks a scene; prints its warnings.
 pub(crate) fn load(arguments: &SceneArguments) -> Result<LoadedScene, Failure> {
+    let loaded = load_silently(arguments)?;
+    loaded.scene.warnings.iter().for_each(print_warning);
+    Ok(loaded)
+}
+
+/// Finds, reads and checks a scene; its warnings are in it.
+pub(crate) fn load_silently(arguments: &SceneArguments) -> Result<LoadedScene, Failure> {
     let found = find(&arguments.scene)?;
     let file = SceneFile::parse(&found.display, &found.text, &arguments.overrides)?;
     check_camera(&file)?;
     let memory = arguments.memory.or_else(memory::available_bytes);
     let scene = Scene::build_within(&file, &found.meshes, memory.unwrap_or(u64::MAX))
         .map_err(|error| tell_of_memory(error, arguments))?;
-    scene.warnings.iter().for_each(print_warning);
     Ok(LoadedScene {
         name: found.name,
         text: file.document.to_toml(),

@@ -5,6 +5,7 @@
 mod assembly;
 mod contact;
 mod drape;
+mod lateral_buckling;
 mod sheet;
 mod solve;
 mod table;
@@ -22,6 +23,7 @@ pub(crate) fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         BenchSubject::Solve(options) => solve::bench(options),
         BenchSubject::Contact(options) => contact::bench(options),
         BenchSubject::Drape(options) => drape::bench(options),
+        BenchSubject::LateralBuckling(options) => lateral_buckling::bench(options),
     }?;
     if arguments.json {
         say!("{}", table.json());

@@ -9,6 +9,8 @@ pub(super) struct Table {
     title: &'static str,
     columns: &'static [(&'static str, &'static str)],
     rows: Vec<Vec<Cell>>,
+    /// What scripts get beside the rows: curves and the like.
+    pub(super) details: Option<Value>,
 }
 
 /// An entry of a table.
@@ -59,6 +61,7 @@ impl Table {
             title,
             columns,
             rows: Vec::new(),
+            details: None,
         }
     }
 
@@ -67,7 +70,7 @@ impl Table {
         self.rows.push(row.into_iter().collect());
     }
 
-    /// `{"bench": title, "rows": [{key: value, …}, …]}`.
+    /// `{"bench": title, "rows": [{key: value, …}, …]}`, and `"details"` where there are some.
     pub(super) fn json(&self) -> Value {
         let value = |cell: &Cell| match cell {
             Cell::Text(text) => json!(text),
@@ -82,7 +85,11 @@ impl Table {
                     .collect()
             })
             .collect();
-        json!({ "bench": self.title, "rows": rows })
+        let mut object = json!({ "bench": self.title, "rows": rows });
+        if let Some(details) = &self.details {
+            object["details"] = details.clone();
+        }
+        object
     }
 }
 
