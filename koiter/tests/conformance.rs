@@ -4,8 +4,8 @@ use koiter::Vec3;
 use koiter::assembly::{Assembled, Dof, DofLayout, Energy, LocalEnergy, LocalHessian};
 use koiter::energy::Membrane;
 use koiter::energy::bending::{
-    AngleProfile, ClampedEdge, DirectorClamp, DiscreteShellsHinge, Identity, MidEdgeBending, Sine,
-    Tangent, bending_stencils,
+    AngleProfile, ClampedEdge, DirectorClamp, DiscreteKirchhoff, DiscreteShellsHinge, Identity,
+    MidEdgeBending, Sine, Tangent, bending_stencils, vertex_normals,
 };
 use koiter::material::{Homogeneous, StVenantKirchhoff};
 use koiter::mesh::{Surface, TriMesh};
@@ -114,6 +114,7 @@ fn claims(s: &Setup, at_rest: bool) -> Claims {
     Claims {
         rigid_motion_invariant: true,
         rest: at_rest.then(|| s.at_rest.clone()),
+        ..Claims::default()
     }
 }
 
@@ -148,6 +149,44 @@ fn dcs_conforms() {
 #[test]
 fn dso_conforms() {
     check_mid_edge::<Identity>();
+}
+
+#[test]
+fn dkt_conforms() {
+    let s = patch(1.0);
+    let section = section(&s);
+    let num_vertices = s.rest.mesh.num_vertices();
+    let mut layout = DofLayout::new();
+    layout.push_nodes(num_vertices, 3, true);
+    let directors = layout.push_nodes(num_vertices, 3, true);
+    let mut at_rest = s.at_rest[..3 * num_vertices].to_vec();
+    at_rest.extend(vertex_normals(&s.rest).iter().flat_map(|d| [d.x, d.y, d.z]));
+    // Directors that are not of unit length, as between the iterations of a solver.
+    let moved = |(i, x): (usize, &f64)| x + 0.2 * ((i * 7 + 1) as f64 * 1.3).sin();
+    let q: Vec<f64> = at_rest.iter().enumerate().map(moved).collect();
+    let flat = vec![[Vector3::zeros(); 3]; s.frames.len()];
+    let model = |forms| {
+        let (frames, section) = (s.frames.clone(), section.clone());
+        DiscreteKirchhoff::new(&s.rest.mesh, Dof(0), directors, frames, forms, section)
+    };
+    let gathered = Assembled::new(model(flat.clone()), &layout);
+    let form = |f| {
+        gathered
+            .local()
+            .second_forms(f, &gathered.gather(f, &at_rest))
+    };
+    let curved: Vec<_> = (0..s.frames.len()).map(form).collect();
+    for (forms, rest) in [(flat, None), (curved, Some(at_rest.clone()))] {
+        let claims = Claims {
+            rigid_motion_invariant: true,
+            directions_from: Some(directors),
+            rest,
+        };
+        let formula = |e: &DiscreteKirchhoff<_>, f: usize, q: &_| {
+            e.formula(f, q, |change| section.bend_formula(f, change))
+        };
+        check(model(forms), &layout, &q, formula, &claims).unwrap();
+    }
 }
 
 #[test]

@@ -179,8 +179,18 @@ fn dso_converges_on_regular_strips_in_second_order() {
 }
 
 #[test]
+fn dkt_converges_on_regular_strips_in_second_order() {
+    check_regular(BendingModel::Dkt);
+}
+
+#[test]
 fn irregular_strips_bend_as_much_as_regular_ones() {
-    for bending in [BendingModel::Bac, BendingModel::Dcs, BendingModel::Dso] {
+    for bending in [
+        BendingModel::Bac,
+        BendingModel::Dcs,
+        BendingModel::Dso,
+        BendingModel::Dkt,
+    ] {
         for gamma in [5.0, 50.0] {
             let (tip, expected) = (hang(irregular_strip(32), bending, gamma), reference(gamma));
             for (found, expected) in tip.iter().zip(expected) {
@@ -205,7 +215,12 @@ fn the_clamp_does_not_depend_on_the_cells_it_holds() {
 fn a_clamped_line_of_vertices_is_a_clamp() {
     let mut line = grid(LENGTH, WIDTH, 16, 2, GridDiagonals::Checkerboard).unwrap();
     line.positions.iter_mut().for_each(|x| x.x += 0.5 * LENGTH);
-    for bending in [BendingModel::Bac, BendingModel::Dcs, BendingModel::Dso] {
+    for bending in [
+        BendingModel::Bac,
+        BendingModel::Dcs,
+        BendingModel::Dso,
+        BendingModel::Dkt,
+    ] {
         let (at_line, at_faces) = (
             hang(line.clone(), bending, 5.0),
             hang(regular_strip(16, 1.0), bending, 5.0),

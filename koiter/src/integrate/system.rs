@@ -12,6 +12,7 @@ use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::contact::{Contact, Friction};
 use crate::energy::bending::{
     BendingStencil, DirectorClamp, DirectorShape, ExtraUnknowns, curvatures, directors,
+    kirchhoff_forms,
 };
 use crate::energy::{Gravity, Inertia};
 use crate::material::Section;
@@ -108,8 +109,18 @@ impl ShellPart {
         0.5 * (0.5 * (a + b) + (0.25 * (a - b) * (a - b) + c * c).sqrt() - 1.0)
     }
 
-    /// Second fundamental form of a face in its rest frame, components `11, 22, 12` [1/m].
+    /// Second fundamental form of a face, or its mean over the face, in its rest frame, components `11, 22, 12` [1/m].
     pub fn second_form(&self, face: usize, q: &[f64]) -> Vector3<f64> {
+        if self.extra == ExtraUnknowns::VertexDirectors {
+            let first = self.first_extra.0 as usize;
+            let directors = self.mesh.faces()[face].map(|v| {
+                let start = first + 3 * v as usize;
+                Vec3::from_column_slice(&q[start..start + 3])
+            });
+            let forms =
+                kirchhoff_forms(&self.frames[face], &self.face_corners(face, q), &directors);
+            return (forms[0] + forms[1] + forms[2]) / 3.0;
+        }
         let curvature = Vector3::from(curvatures(&self.stencils[face], self.director_shape, q));
         Vector3::from(
             self.frames[face]

@@ -18,7 +18,14 @@ pub struct BendingModelInfo {
 
 impl BendingModel {
     /// All models.
-    pub const ALL: [Self; 5] = [Self::Bac, Self::Dcs, Self::Dso, Self::DsTheta, Self::None];
+    pub const ALL: [Self; 6] = [
+        Self::Bac,
+        Self::Dcs,
+        Self::Dso,
+        Self::Dkt,
+        Self::DsTheta,
+        Self::None,
+    ];
 
     /// What is to be said of the model.
     pub fn info(self) -> BendingModelInfo {
@@ -40,6 +47,12 @@ impl BendingModel {
                 what: "Discrete shape operator: directors on edges, profile the angle itself; converges",
                 unknowns: ExtraUnknowns::EdgeAngles,
                 source: "better-bending-2026, Eq. 31",
+            },
+            Self::Dkt => BendingModelInfo {
+                name: "dkt",
+                what: "Discrete Kirchhoff triangle: directors on vertices; converges, accurate on coarse meshes too, not for sharp folds",
+                unknowns: ExtraUnknowns::VertexDirectors,
+                source: "better-bending-2026, Eq. 28, after batoz-1980",
             },
             Self::DsTheta => BendingModelInfo {
                 name: "ds-theta",

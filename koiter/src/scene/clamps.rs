@@ -1,7 +1,9 @@
 //! Clamped edges: from constraints to prescribed directors, and along their motions.
 
 use super::model::{Constraint, Model};
+use super::vertex_directors::HeldDirector;
 use crate::Vec3;
+use crate::assembly::Dof;
 use crate::energy::bending::{ClampedEdge, DirectorClamp, ExtraUnknowns};
 use crate::integrate::ShellPart;
 use crate::mesh::{EdgeId, FaceId};
@@ -18,23 +20,36 @@ struct Source {
     stiffness: f64,
 }
 
-/// All clamped edges of a scene.
+/// All clamped edges and vertices of a scene.
 pub(super) struct Clamps {
     sources: Vec<Source>,
+    /// Directors of clamped vertices.
+    pub(super) held_directors: Vec<HeldDirector>,
 }
 
 impl Clamps {
-    /// Edges between vertices whose three coordinates a clamping constraint holds, in shells with edge angles.
+    /// Edges between vertices whose three coordinates a clamping constraint holds, in shells with edge angles, and
+    /// the directors of such vertices.
     pub(super) fn new(model: &Model, parts: &[ShellPart], q: &[f64]) -> (Self, DirectorClamp) {
         let mut sources = Vec::new();
+        let mut held_directors = Vec::new();
         let mut edges = Vec::new();
         for (index, constraint) in model.constraints.iter().enumerate() {
             let (shell, part) = (&model.shells[constraint.shell], &parts[constraint.shell]);
-            if !constraint.clamp_directors
-                || constraint.axes != [true; 3]
-                || part.extra != ExtraUnknowns::EdgeAngles
-            {
+            if !constraint.clamp_directors || constraint.axes != [true; 3] {
                 continue;
+            }
+            match part.extra {
+                ExtraUnknowns::EdgeAngles => {}
+                ExtraUnknowns::VertexDirectors => {
+                    held_directors.extend(
+                        constraint.vertices.iter().map(|v| {
+                            HeldDirector::new(index, Dof(part.first_extra.0 + 3 * v.0), q)
+                        }),
+                    );
+                    continue;
+                }
+                ExtraUnknowns::None | ExtraUnknowns::EdgePoints => continue,
             }
             let nu = shell.poissons_ratio;
             let rigidity =
@@ -67,7 +82,11 @@ impl Clamps {
                 });
             }
         }
-        (Self { sources }, DirectorClamp { edges })
+        let clamps = Self {
+            sources,
+            held_directors,
+        };
+        (clamps, DirectorClamp { edges })
     }
 
     /// The part of a clamp that one constraint makes.

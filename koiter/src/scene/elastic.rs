@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use super::assemble::{BuildError, Unknowns, write_points};
 use super::model::{BendingModel, Model, Shell};
+use super::vertex_directors::kirchhoff_bending;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::energy::Membrane;
 use crate::energy::bending::{
@@ -20,7 +21,7 @@ use crate::rest::{RestError, rest_frames};
 /// What the shells are made of.
 pub(super) struct Elastic {
     pub(super) energies: Vec<Box<dyn Energy>>,
-    /// Of every solved unknown [kg, or kg·m² for director angles].
+    /// Of every solved unknown [kg, or kg·m² for directors].
     pub(super) masses: Vec<f64>,
     pub(super) parts: Vec<ShellPart>,
 }
@@ -70,6 +71,7 @@ impl Elastic {
             BendingModel::Bac => director_bending::<Tangent>(shell, &mut part, layout, q, masses)?,
             BendingModel::Dcs => director_bending::<Sine>(shell, &mut part, layout, q, masses)?,
             BendingModel::Dso => director_bending::<Identity>(shell, &mut part, layout, q, masses)?,
+            BendingModel::Dkt => Some(kirchhoff_bending(shell, &mut part, layout, q, masses)?),
             BendingModel::DsTheta => Some(hinge_bending(shell, &part, layout)),
             BendingModel::None => None,
         };
@@ -84,7 +86,7 @@ fn director_shape(bending: BendingModel) -> DirectorShape {
     match bending {
         BendingModel::Bac => DirectorShape::Tangent,
         BendingModel::Dcs | BendingModel::Dso => DirectorShape::Unit,
-        BendingModel::DsTheta | BendingModel::None => DirectorShape::Bisector,
+        BendingModel::Dkt | BendingModel::DsTheta | BendingModel::None => DirectorShape::Bisector,
     }
 }
 

@@ -16,6 +16,7 @@ pub mod model;
 pub mod schedule;
 mod simulation;
 mod snapshot;
+mod vertex_directors;
 
 #[cfg(feature = "serde")]
 mod build;

@@ -22,6 +22,8 @@ pub enum BendingModel {
     Dcs,
     /// Mid-edge directors, second-order profile.
     Dso,
+    /// Discrete Kirchhoff triangle: unit directors at the vertices.
+    Dkt,
     /// Discrete Shells hinge, energy quadratic in the hinge angle.
     DsTheta,
     /// No bending energy: a pure membrane.

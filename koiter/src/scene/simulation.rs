@@ -8,7 +8,8 @@ use crate::Vec3;
 use crate::assembly::{Assembled, Dof, Energy};
 use crate::energy::bending::ExtraUnknowns;
 use crate::integrate::{
-    ImplicitEuler, Integrator, Prescribed, QuasiStatic, State, StepError, StepReport, System,
+    ImplicitEuler, Integrator, Prescribed, QuasiStatic, ShellPart, State, StepError, StepReport,
+    System,
 };
 
 /// A model with its state, advanced step by step.
@@ -45,6 +46,17 @@ pub struct SystemStats {
 pub(super) const BYTES_A_DOF: usize = 6_000;
 /// The program itself, with its scene and pictures.
 pub(super) const PROGRAM_BYTES: usize = 40_000_000;
+
+/// Entries of the Hessian a face, both triangles, counted on large Delaunay meshes.
+fn nonzeros_a_face(extra: ExtraUnknowns) -> usize {
+    match extra {
+        ExtraUnknowns::None => 58,
+        ExtraUnknowns::EdgeAngles => 166,
+        // Six unknowns a vertex, which meets itself and six others.
+        ExtraUnknowns::VertexDirectors => 126,
+        ExtraUnknowns::EdgePoints => 300,
+    }
+}
 
 impl Simulation {
     /// Builds energies and masses, solves for rest and start directors, and checks the start.
@@ -150,6 +162,14 @@ impl Simulation {
                     is_fixed[start + axis] = true;
                     target[start + axis] = x[axis];
                 }
+            }
+        }
+        for held in &self.clamps.held_directors {
+            let constraint = &self.model.constraints[held.constraint];
+            if time <= constraint.until {
+                let range = held.dof.0 as usize..held.dof.0 as usize + 3;
+                is_fixed[range.clone()].fill(true);
+                target[range].copy_from_slice(held.at(constraint, time).as_slice());
             }
         }
         for (obstacle, (first, points)) in self.model.obstacles.iter().zip(&self.obstacles) {
@@ -326,19 +346,14 @@ impl Simulation {
             self.model.shells.iter().map(|s| f(&s.surface.mesh)).sum()
         };
         let dofs = self.system.layout.num_solved_dofs();
-        let (faces, directors) = (
-            sum(&|m| m.num_faces()),
-            self.system.layout.num_solved_nodes(),
-        );
-        let has_directors = directors > sum(&|m| m.num_vertices());
-        // Entries a face, both triangles, counted on large Delaunay meshes: 166 with directors, 58 with hinges.
-        let hessian_nonzeros = faces * if has_directors { 166 } else { 58 };
+        let nonzeros = |part: &ShellPart| part.mesh.num_faces() * nonzeros_a_face(part.extra);
+        let hessian_nonzeros = self.system.space.shells.iter().map(nonzeros).sum();
         let mut energies: Vec<&'static str> =
             self.energies().into_iter().map(|(name, _)| name).collect();
         energies.dedup();
         SystemStats {
             vertices: sum(&|m| m.num_vertices()),
-            faces,
+            faces: sum(&|m| m.num_faces()),
             dofs,
             hessian_nonzeros,
             estimated_memory_bytes: PROGRAM_BYTES + dofs * BYTES_A_DOF,

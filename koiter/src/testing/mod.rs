@@ -8,7 +8,7 @@ use std::sync::Arc;
 use nalgebra::{Rotation3, SVector, Vector3};
 
 use crate::assembly::{
-    Assembled, DofLayout, Energy, HessianBuilder, LocalEnergy, Pattern, PatternBuilder,
+    Assembled, Dof, DofLayout, Energy, HessianBuilder, LocalEnergy, Pattern, PatternBuilder,
     PsdProjection, SymmetricMatrix,
 };
 use crate::geometry::{Jet, Real};
@@ -18,6 +18,8 @@ use crate::geometry::{Jet, Real};
 pub struct Claims {
     /// The energy does not change under rigid motions of all points (nodes of size 3).
     pub rigid_motion_invariant: bool,
+    /// Nodes of size 3 from this unknown on are directions: they turn with the points but are not shifted.
+    pub directions_from: Option<Dof>,
     /// A state in which the gradient vanishes.
     pub rest: Option<Vec<f64>>,
 }
@@ -84,7 +86,7 @@ pub fn check<const N: usize, const K: usize, L: LocalEnergy<N, K>>(
     differences(&energy, q, &fail)?;
     assembly(&mut energy, layout, q, &fail)?;
     if claims.rigid_motion_invariant {
-        rigid_motion(&energy, layout, q, &fail)?;
+        rigid_motion(&energy, layout, q, claims.directions_from, &fail)?;
     }
     match &claims.rest {
         Some(rest) => no_force(&energy, q, rest, &fail),
@@ -365,6 +367,7 @@ fn rigid_motion(
     energy: &dyn Energy,
     layout: &DofLayout,
     q: &[f64],
+    directions_from: Option<Dof>,
     fail: &Fail<'_>,
 ) -> Result<(), Violation> {
     let rotation = Rotation3::from_euler_angles(0.7, -1.1, 2.3);
@@ -376,7 +379,10 @@ fn rigid_motion(
         .collect();
     let mut moved = q.to_vec();
     for &start in &points {
-        let x = rotation * Vector3::from_column_slice(&q[start..start + 3]) + shift;
+        let mut x = rotation * Vector3::from_column_slice(&q[start..start + 3]);
+        if directions_from.is_none_or(|first| start < first.0 as usize) {
+            x += shift;
+        }
         moved[start..start + 3].copy_from_slice(x.as_slice());
     }
     let (before, after) = (energy.value(q), energy.value(&moved));

@@ -3,6 +3,8 @@
 mod director_clamp;
 mod extra_unknowns;
 mod hinge;
+mod kirchhoff;
+mod kirchhoff_form;
 mod mid_edge;
 mod profile;
 mod quadratic_form;
@@ -10,6 +12,8 @@ mod quadratic_form;
 pub use director_clamp::{ClampedEdge, DirectorClamp};
 pub use extra_unknowns::ExtraUnknowns;
 pub use hinge::DiscreteShellsHinge;
+pub use kirchhoff::{DiscreteKirchhoff, vertex_normals};
+pub use kirchhoff_form::kirchhoff_forms;
 pub use mid_edge::{
     BendingStencil, DirectorShape, MidEdgeBending, bending_stencils, curvatures, directors,
 };
