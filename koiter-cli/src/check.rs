@@ -1,7 +1,8 @@
 //! `koiter check`: reads everything, runs nothing.
 
 use crate::output::say;
-use koiter::scene::readable_bytes;
+use koiter::scene::model::{Load, Model};
+use koiter::scene::{LoadTotal, readable_bytes};
 use serde::Serialize;
 
 use crate::arguments::CheckArguments;
@@ -24,6 +25,7 @@ struct Report {
     shells: Vec<ShellReport>,
     obstacles: Vec<String>,
     constraints: usize,
+    loads: Vec<LoadReport>,
     probes: Vec<String>,
     warnings: Vec<String>,
 }
@@ -39,6 +41,40 @@ struct ShellReport {
     shortest_edge: f64,
     min_angle_degrees: f64,
     boundary_loops: Vec<usize>,
+}
+
+/// A load at a factor of 1; of its totals the one that it has.
+#[derive(Default, Serialize)]
+struct LoadReport {
+    name: String,
+    shell: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    total_force: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pressure: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    total_moment: Option<f64>,
+    #[serde(skip)]
+    words: String,
+}
+
+impl LoadReport {
+    fn new(model: &Model, load: &Load) -> Self {
+        let total = model.load_total(load);
+        let mut report = Self {
+            name: load.name.clone(),
+            shell: model.shells[load.shell].name.clone(),
+            words: total.to_string(),
+            ..Self::default()
+        };
+        match total {
+            LoadTotal::Force(force) => report.total_force = Some(force.into()),
+            LoadTotal::Pressure(pressure) => report.pressure = Some(pressure),
+            LoadTotal::Moment(moment) => report.total_moment = Some(moment),
+            _ => {}
+        }
+        report
+    }
 }
 
 /// Checks a scene.
@@ -67,6 +103,9 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         .map(|obstacle| obstacle.name.clone())
         .collect();
     let constraints = scene.model.constraints.len();
+    let loads = scene.model.loads.iter();
+    let loads = loads.map(|load| LoadReport::new(&scene.model, load));
+    let loads = loads.collect();
     let stats = start(&scene.model, arguments.debug_mesh.as_deref())?.stats();
     let report = Report {
         title: scene.title,
@@ -81,6 +120,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         shells,
         obstacles,
         constraints,
+        loads,
         probes: scene.probes.into_iter().map(|probe| probe.name).collect(),
         warnings: scene
             .warnings
@@ -120,6 +160,14 @@ impl Report {
             say!("obstacles: {}", self.obstacles.join(", "));
         }
         say!("constraints: {}", self.constraints);
+        for load in &self.loads {
+            say!(
+                "load {}: on shell {}, {}",
+                load.name,
+                load.shell,
+                load.words
+            );
+        }
         say!("energies: {}", self.energies.join(", "));
         say!(
             "in all {} vertices, {} triangles, {} degrees of freedom, {} Hessian entries, about {}",

@@ -48,15 +48,12 @@ fn main() {
     let model = Model {
         shells: vec![shell],
         obstacles: vec![ball],
-        constraints: vec![],
         gravity: Vec3::new(0.0, 0.0, -9.81),
-        gravity_scale: None,
         contact: ContactOptions {
             d_hat: Some(1e-3),
             ..Default::default()
         },
-        solver: SolverOptions::default(),
-        integrator: IntegratorKind::ImplicitEuler,
+        ..Model::default()
     };
     let mut simulation = Simulation::new(model).expect("a valid start");
     let start = std::time::Instant::now();

@@ -7,6 +7,7 @@ use koiter::energy::bending::{
     AngleProfile, ClampedEdge, DirectorClamp, DiscreteKirchhoff, DiscreteShellsHinge, Identity,
     MidEdgeBending, Sine, Tangent, bending_stencils, vertex_normals,
 };
+use koiter::energy::loads::{EdgeMoment, Pressure, TurnedEdge};
 use koiter::material::{Homogeneous, StVenantKirchhoff};
 use koiter::mesh::{Surface, TriMesh};
 use koiter::rest::{RestFrame, rest_frames};
@@ -240,6 +241,60 @@ fn the_director_clamp_conforms() {
     let clamp = DirectorClamp { edges };
     check(
         clamp,
+        &s.layout,
+        &s.q,
+        |e, i, q| e.formula(i, q),
+        &Claims::default(),
+    )
+    .unwrap();
+}
+
+#[test]
+fn pressure_conforms() {
+    let s = patch(1.0);
+    let pressure = Pressure {
+        faces: (s.rest.mesh.faces().iter())
+            .map(|face| face.map(|v| Dof(3 * v)))
+            .collect(),
+        pressure: 1.7,
+        origin: Vec3::new(0.2, -0.4, 0.9),
+        factor: 0.6,
+    };
+    check(
+        pressure,
+        &s.layout,
+        &s.q,
+        |e, _, q| e.formula(q),
+        &Claims::default(),
+    )
+    .unwrap();
+}
+
+#[test]
+fn the_edge_moment_conforms() {
+    let s = patch(1.0);
+    let stencils = bending_stencils(&s.rest.mesh, Dof(0), s.edges);
+    let mut edges = Vec::new();
+    for (face, stencil) in stencils.iter().enumerate() {
+        for c in 0..3 {
+            let ends = [(c + 1) % 3, (c + 2) % 3];
+            let corners = s.rest.mesh.faces()[face];
+            edges.push(TurnedEdge {
+                corners: [ends[0], ends[1], c].map(|i| stencil.corners[i]),
+                across: stencil.across[c],
+                angle: stencil.angles[c],
+                sign: stencil.signs[c],
+                moment: 0.8 + 0.1 * c as f64,
+                // Not quite across the edges: only the part that is counts.
+                reference: Vec3::new(0.3, 0.5, 1.0),
+                turned: 0.3,
+                vertices: ends.map(|i| corners[i]),
+            });
+        }
+    }
+    let moment = EdgeMoment { edges, factor: 1.3 };
+    check(
+        moment,
         &s.layout,
         &s.q,
         |e, i, q| e.formula(i, q),

@@ -56,15 +56,12 @@ fn scene(shells: Vec<Shell>, obstacles: Vec<Obstacle>) -> Model {
     Model {
         shells,
         obstacles,
-        constraints: vec![],
         gravity: Vec3::new(0.0, 0.0, -9.81),
-        gravity_scale: None,
         contact: ContactOptions {
             d_hat: Some(D_HAT),
             ..Default::default()
         },
-        solver: SolverOptions::default(),
-        integrator: IntegratorKind::ImplicitEuler,
+        ..Model::default()
     }
 }
 

@@ -36,10 +36,6 @@ fn shell(surface: Surface, bending: BendingModel) -> Shell {
 fn free(shell: Shell) -> Model {
     Model {
         shells: vec![shell],
-        obstacles: vec![],
-        constraints: vec![],
-        gravity: Vec3::zeros(),
-        gravity_scale: None,
         contact: ContactOptions {
             enabled: false,
             ..Default::default()
@@ -49,7 +45,7 @@ fn free(shell: Shell) -> Model {
             velocity_tolerance: 1e-9,
             ..Default::default()
         },
-        integrator: IntegratorKind::ImplicitEuler,
+        ..Model::default()
     }
 }
 

@@ -106,7 +106,6 @@ fn hang(surface: Surface, bending: BendingModel, gamma: f64) -> [f64; 2] {
     };
     let model = Model {
         shells: vec![shell],
-        obstacles: vec![],
         constraints: vec![clamp],
         gravity: Vec3::new(0.0, 0.0, -GRAVITY),
         gravity_scale: Some(Schedule {
@@ -122,6 +121,7 @@ fn hang(surface: Surface, bending: BendingModel, gamma: f64) -> [f64; 2] {
             ..Default::default()
         },
         integrator: IntegratorKind::QuasiStatic,
+        ..Model::default()
     };
     let mut simulation = Simulation::new(model).unwrap();
     for _ in 0..2 {

@@ -5,6 +5,7 @@ mod inertia;
 mod membrane;
 
 pub mod bending;
+pub mod loads;
 
 pub use gravity::Gravity;
 pub use inertia::Inertia;

@@ -14,6 +14,7 @@ use crate::energy::bending::{
     BendingStencil, DirectorClamp, DirectorShape, ExtraUnknowns, curvatures, directors,
     kirchhoff_forms,
 };
+use crate::energy::loads::Loads;
 use crate::energy::{Gravity, Inertia};
 use crate::material::Section;
 use crate::mesh::TriMesh;
@@ -146,6 +147,8 @@ pub struct System {
     pub clamps: Assembled<DirectorClamp, 7, 3>,
     /// Gravity.
     pub gravity: Gravity,
+    /// What pushes and turns from outside.
+    pub loads: Loads,
     /// Lumped masses [kg] and rotational inertias [kg·m²] of the solved unknowns.
     pub masses: Vec<f64>,
     /// Whether there is motion: statics has no kinetic energy to report.
@@ -199,6 +202,7 @@ impl System {
         }
         energies.push(&mut self.clamps);
         energies.push(&mut self.gravity);
+        energies.push(&mut self.loads);
         // Inertia holds a body on a saddle for the moment that a step takes; at rest it would not stay there.
         let minimize = if inertia.is_some() {
             minimize
@@ -244,6 +248,9 @@ impl System {
             add(self.clamps.name(), self.clamps.value(&state.q));
         }
         add("gravity", self.gravity.value(&state.q));
+        if !self.loads.loads.is_empty() {
+            add(self.loads.name(), self.loads.value(&state.q));
+        }
         if self.is_dynamic {
             let kinetic = self
                 .masses
@@ -292,6 +299,7 @@ impl System {
             report.min_gap = f64::INFINITY;
         }
         seconds.push(("audit", clock.elapsed().as_secs_f64()));
+        self.loads.rebase(&next.q);
         report.step = next.step;
         report.time = next.time;
         report.newton_iterations = newton.iterations;

@@ -2,6 +2,7 @@
 
 use super::clamps::Clamps;
 use super::elastic::{Elastic, rest_surface};
+use super::loads::loads;
 use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout};
@@ -42,6 +43,16 @@ pub enum BuildError {
         /// Name of the obstacle.
         obstacle: String,
     },
+    /// A moment on directors that are not there.
+    #[error(
+        "load '{load}': a moment turns directors, which the bending model of shell '{shell}' has not; use bac, dcs or dso"
+    )]
+    MomentWithoutDirectors {
+        /// Name of the load.
+        load: String,
+        /// Name of the shell.
+        shell: String,
+    },
     /// Something touches or intersects at the start.
     #[error(transparent)]
     Start(#[from] StartError),
@@ -77,6 +88,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         parts,
     } = Elastic::new(model, &unknowns, &mut q)?;
     let (clamps, clamped_edges) = Clamps::new(model, &parts, &q);
+    let loads = loads(model, &parts, &unknowns.layout, &q)?;
     let gravity = Gravity {
         masses: vertex_masses(&parts, &masses),
         acceleration: model.gravity,
@@ -98,6 +110,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         layout,
         elastic: energies,
         gravity,
+        loads,
         masses,
         is_dynamic: model.integrator == IntegratorKind::ImplicitEuler,
         contact,

@@ -1,5 +1,7 @@
 //! From what was typed to a model that can be simulated: meshes read, selections resolved, plausibility checked.
 
+mod loads;
+
 use super::document::Document;
 use super::error::{SceneError, SceneErrorKind as Kind, Warning};
 use super::memory;
@@ -118,11 +120,13 @@ impl Builder<'_> {
             .map(|o| self.obstacle(o))
             .collect::<Result<_, _>>()?;
         let constraints = self.constraints(&shells)?;
+        let loads = self.loads(&shells)?;
         let (contact, solver) = (&spec.contact, SolverOptions::default());
         Ok(Model {
             shells,
             obstacles,
             constraints,
+            loads,
             gravity: Vec3::from(spec.gravity),
             gravity_scale: spec.gravity_scale.clone(),
             contact: ContactOptions {

@@ -12,6 +12,7 @@ mod display;
 mod elastic;
 mod fingerprint;
 mod free_parts;
+mod loads;
 pub mod model;
 pub mod schedule;
 mod simulation;
@@ -48,6 +49,7 @@ pub use self::{
     bending_models::BendingModelInfo,
     display::PartTopology,
     free_parts::FreePart,
+    loads::LoadTotal,
     simulation::{Simulation, SystemStats},
     snapshot::{RestoreError, Snapshot},
 };

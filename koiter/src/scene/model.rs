@@ -1,7 +1,7 @@
 //! A checked scene, ready to be simulated: shells, obstacles, constraints, loads.
 
 use crate::Vec3;
-use crate::mesh::VertexId;
+use crate::mesh::{EdgeId, FaceId, VertexId};
 
 pub use super::composition::{Composition, MaterialLaw};
 pub use crate::mesh::Surface;
@@ -150,6 +150,61 @@ pub struct Constraint {
     pub until: f64,
 }
 
+/// What pushes or turns a shell from outside.
+#[derive(Clone, Debug)]
+pub struct Load {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Index of the shell.
+    pub shell: usize,
+    /// Where and how much.
+    pub kind: LoadKind,
+    /// Factor over time (`None`: 1).
+    pub scale: Option<Schedule<f64>>,
+}
+
+/// Kinds of loads; lengths and areas are those of the rest shape.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum LoadKind {
+    /// The same force on each of some vertices; it keeps its direction.
+    Point {
+        /// The vertices.
+        vertices: Vec<VertexId>,
+        /// Force on each [N].
+        force: Vec3,
+    },
+    /// A force by length along edges; it keeps its direction.
+    Edge {
+        /// The edges.
+        edges: Vec<EdgeId>,
+        /// Force by rest length [N/m].
+        force: Vec3,
+    },
+    /// A force by area; it keeps its direction.
+    Area {
+        /// The faces.
+        faces: Vec<FaceId>,
+        /// Force by rest area of the midsurface [N/m²].
+        force: Vec3,
+    },
+    /// Pressure on the whole shell; it follows the normals.
+    Pressure {
+        /// Pressure along the normals [Pa].
+        pressure: f64,
+        /// The origin of volumes [m], which matters at free edges: see [`crate::energy::loads::Pressure`].
+        origin: Vec3,
+    },
+    /// A moment about edges that turns their directors, right-handed about the edge as its face traverses it, the surface
+    /// on the left (an inner edge: from its smaller to its larger vertex). Only for bending models with directors.
+    Moment {
+        /// The edges.
+        edges: Vec<EdgeId>,
+        /// Moment by rest length [N·m/m].
+        moment: f64,
+    },
+}
+
 /// How surfaces touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactOptions {
@@ -211,8 +266,8 @@ pub enum IntegratorKind {
     QuasiStatic,
 }
 
-/// Everything a [`super::Simulation`] is made of.
-#[derive(Clone, Debug)]
+/// Everything a [`super::Simulation`] is made of; by default nothing, without gravity.
+#[derive(Clone, Debug, Default)]
 pub struct Model {
     /// Shells.
     pub shells: Vec<Shell>,
@@ -220,6 +275,8 @@ pub struct Model {
     pub obstacles: Vec<Obstacle>,
     /// Prescribed vertices.
     pub constraints: Vec<Constraint>,
+    /// Loads.
+    pub loads: Vec<Load>,
     /// Gravitational acceleration [m/s²].
     pub gravity: Vec3,
     /// Factor on gravity over time (`None`: 1).

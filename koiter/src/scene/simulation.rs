@@ -3,6 +3,7 @@
 use super::assemble::{Assembly, BuildError, assemble};
 use super::clamps::Clamps;
 use super::display::{PartTopology, tessellate};
+use super::loads::set_factors;
 use super::model::{IntegratorKind, Model};
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, Energy};
@@ -139,11 +140,12 @@ impl Simulation {
         Ok(report)
     }
 
-    /// Gravity and clamps as they are at a time [s].
+    /// Gravity, loads and clamps as they are at a time [s].
     pub(super) fn apply_schedules(&mut self, time: f64) {
         if let Some(scale) = &self.model.gravity_scale {
             self.system.gravity.acceleration = self.model.gravity * scale.at(time);
         }
+        set_factors(&self.model, time, &mut self.system.loads);
         self.clamps
             .advance(&self.model, time, self.system.clamps.local_mut());
     }
@@ -232,7 +234,7 @@ impl Simulation {
 
     /// Total force that a constraint exerts on its vertices [N], friction of contact left out.
     ///
-    /// The force that balances elasticity, gravity, contact and inertia of the last step at the held coordinates; where
+    /// The force that balances elasticity, gravity, loads, contact and inertia of the last step at the held coordinates; where
     /// two constraints hold the same coordinate both are told its force.
     pub fn reaction(&self, constraint: usize) -> Vec3 {
         let mut gradient = vec![0.0; self.system.layout.num_dofs()];
@@ -242,6 +244,7 @@ impl Simulation {
         self.system
             .gravity
             .add_gradient(&self.state.q, &mut gradient);
+        (self.system.loads).add_gradient(&self.state.q, &mut gradient);
         if let Some(contact) = &self.system.contact {
             contact.add_gradient(&self.state.q, &mut gradient);
         }

@@ -15,6 +15,8 @@ pub struct Snapshot {
     pub momentum_rates: Vec<f64>,
     /// Barrier stiffness [J/m²], which grows where gaps shrink; `None` where contact is off.
     pub kappa: Option<f64>,
+    /// How far the directors of edges under moments have turned [rad], in the order of loads and edges.
+    pub turned: Vec<f64>,
     /// What the linear solver keeps between steps.
     pub solver: WorkspaceHistory,
 }
@@ -34,6 +36,7 @@ impl Simulation {
             state: self.state.clone(),
             momentum_rates: self.momentum_rates.clone(),
             kappa: self.system.contact.as_ref().map(|contact| contact.kappa()),
+            turned: self.system.loads.turned(),
             solver: self.system.workspace.history(),
         }
     }
@@ -49,6 +52,7 @@ impl Simulation {
             LinearWorkspace::with_history(&snapshot.solver, &self.system.layout).map_err(refuse)?;
         self.state = snapshot.state.clone();
         self.momentum_rates = snapshot.momentum_rates.clone();
+        (self.system.loads).restore_turned(&snapshot.turned, &self.state.q);
         self.apply_schedules(self.state.time);
         if let (Some(contact), Some(kappa)) = (&mut self.system.contact, snapshot.kappa) {
             contact.set_kappa(kappa);
@@ -67,6 +71,11 @@ impl Simulation {
                 "forces",
                 &snapshot.momentum_rates,
                 self.momentum_rates.len(),
+            ),
+            (
+                "angles of moments",
+                &snapshot.turned,
+                self.system.loads.turned().len(),
             ),
         ] {
             if values.len() != expected {

@@ -19,9 +19,11 @@
 //! ```
 
 mod check;
+mod load;
 mod shape;
 
 pub use check::MAX_STEPS;
+pub use load::{EdgeChoice, LoadSpec};
 pub use shape::{
     BoxSpec, CapsuleSpec, CylinderBodySpec, MeshSpec, PlaneSpec, RotationSpec, SphereSpec, Units,
     UpAxis,
@@ -70,6 +72,9 @@ pub struct SceneSpec {
     /// Prescribed vertices.
     #[serde(default)]
     pub constraint: Vec<ConstraintSpec>,
+    /// Loads.
+    #[serde(default)]
+    pub load: Vec<LoadSpec>,
     /// Contact.
     #[serde(default)]
     pub contact: ContactSpec,
@@ -429,8 +434,8 @@ impl Default for OutputSpec {
 }
 
 /// Names of the energies that a probe can measure; one that a scene has not is 0.
-pub const ENERGY_NAMES: [&str; 6] = [
-    "membrane", "bending", "clamps", "gravity", "kinetic", "contact",
+pub const ENERGY_NAMES: [&str; 7] = [
+    "membrane", "bending", "clamps", "gravity", "loads", "kinetic", "contact",
 ];
 
 /// Names of the face fields a run can write.

@@ -110,7 +110,7 @@ impl DiscreteShellsHinge {
 }
 
 /// Hinge angle of edge `x₀ x₁` with apexes `x₂` (face traversing `0 → 1`) and `x₃`, over any numbers.
-pub(super) fn turning_angle<R: Real>(x: &[[R; 3]; 4]) -> R {
+pub(in crate::energy) fn turning_angle<R: Real>(x: &[[R; 3]; 4]) -> R {
     let sub = |p: &[R; 3], q: &[R; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
     let dot = |p: &[R; 3], q: &[R; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
     let cross = |p: &[R; 3], q: &[R; 3]| {

@@ -12,6 +12,7 @@ mod quadratic_form;
 pub use director_clamp::{ClampedEdge, DirectorClamp};
 pub use extra_unknowns::ExtraUnknowns;
 pub use hinge::DiscreteShellsHinge;
+pub(super) use hinge::turning_angle;
 pub use kirchhoff::{DiscreteKirchhoff, vertex_normals};
 pub use kirchhoff_form::kirchhoff_forms;
 pub use mid_edge::{

@@ -5,6 +5,7 @@
 //! list of bodies: text name, u64 fingerprint of the mesh
 //! u64 step  f64 time  list of f64: q, its rates, momentum rates
 //! u8 1 with contact, else 0  f64 barrier stiffness
+//! list of f64: what the directors under moments have turned
 //! list of u32 × 2: couplings by contacts  list of u32: elimination order  u64 factor entries when it was made
 //! u64 × 3 Newton iterations, steps not converged, intersections  f64 × 2 smallest gap, seconds
 //! list of parts of the run: text name, f64 seconds  list of f64: last values of the probes
@@ -25,7 +26,7 @@ use crate::scene::Snapshot;
 use crate::solve::WorkspaceHistory;
 
 const MAGIC: &[u8; 8] = b"KOITERCP";
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// All that is needed to go on with a run to the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,6 +138,7 @@ impl Checkpoint {
         out.numbers(&snapshot.momentum_rates);
         out.0.push(snapshot.kappa.is_some().into());
         out.f64(snapshot.kappa.unwrap_or(0.0));
+        out.numbers(&snapshot.turned);
         let WorkspaceHistory {
             changing_pairs,
             node_order,
@@ -209,6 +211,7 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
     let momentum_rates = numbers(reader)?;
     let has_contact = reader.u8()?;
     let kappa = reader.f64()?;
+    let turned = numbers(reader)?;
     let solver = WorkspaceHistory {
         changing_pairs: list(reader, 8, |reader| Some([reader.u32()?, reader.u32()?]))?,
         node_order: list(reader, 4, ByteReader::u32)?,
@@ -227,6 +230,7 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
         state,
         momentum_rates,
         kappa: (has_contact == 1).then_some(kappa),
+        turned,
         solver,
     };
     Some(Checkpoint {

@@ -17,6 +17,11 @@ plane = {}
 name = "pin"
 shell = "sheet"
 select.all = true
+[[load]]
+name = "lift"
+shell = "sheet"
+select.all = true
+force = [0.0, 0.0, 1.0]
 [[probe]]
 name = "lowest"
 quantity = "lowest"

@@ -1,5 +1,7 @@
 //! Checks that need no mesh: ranges, names, and keys that must stand alone.
 
+mod loads;
+
 use std::collections::HashSet;
 
 use super::{
@@ -56,6 +58,10 @@ pub(super) fn check(spec: &SceneSpec) -> Checked {
             .map(|constraint| constraint.name.as_deref()),
     )?;
     unique(
+        "load",
+        spec.load.iter().map(|load| Some(load.name.as_str())),
+    )?;
+    unique(
         "probe",
         spec.probe.iter().map(|probe| Some(probe.name.as_str())),
     )?;
@@ -67,6 +73,9 @@ pub(super) fn check(spec: &SceneSpec) -> Checked {
     }
     for (index, constraint) in spec.constraint.iter().enumerate() {
         check_constraint(&constraint.path(index), constraint, spec)?;
+    }
+    for load in &spec.load {
+        loads::check_load(load, spec)?;
     }
     for probe in &spec.probe {
         check_probe(&format!("probe.{}", probe.name), probe, spec)?;

@@ -14,6 +14,7 @@ fn checkpoint() -> Checkpoint {
             },
             momentum_rates: vec![1.5],
             kappa: Some(1e5),
+            turned: vec![7.5],
             solver: WorkspaceHistory {
                 changing_pairs: vec![[0, 1], [0, 7]],
                 node_order: vec![2, 0, 1],
@@ -76,7 +77,7 @@ fn lengths_are_not_trusted_even_under_an_honest_checksum() {
 #[test]
 fn another_format_is_named() {
     let mut bytes = checkpoint().to_bytes();
-    bytes[8] = 2;
+    bytes[8] = 3;
     let error = Checkpoint::from_bytes(&bytes).unwrap_err().to_string();
-    assert!(error.contains("version 2"), "{error}");
+    assert!(error.contains("version 3"), "{error}");
 }

@@ -1,0 +1,148 @@
+//! Loads: the potentials of what pushes and turns shells from outside.
+//!
+//! A dead load keeps its direction; pressure and moments follow the surface. Each has a potential, so a static state
+//! under load is a minimum like any other. Magnitudes are given at a factor of 1, which schedules change over time.
+
+mod dead_load;
+mod edge_moment;
+mod pressure;
+
+pub use dead_load::{DeadLoad, VertexForce};
+pub use edge_moment::{EdgeMoment, TurnedEdge};
+pub use pressure::Pressure;
+
+use crate::assembly::{
+    Assembled, Energy, HessianBuilder, Pattern, PatternBuilder, PsdProjection, WorstElement,
+};
+
+/// One load.
+pub enum Load {
+    /// Forces that keep their direction.
+    Dead(DeadLoad),
+    /// Pressure along the normals.
+    Pressure(Assembled<Pressure, 9, 3>),
+    /// Moments about edges.
+    Moment(Assembled<EdgeMoment, 13, 5>),
+}
+
+impl Load {
+    /// Sets the factor on the magnitude.
+    pub fn set_factor(&mut self, factor: f64) {
+        match self {
+            Self::Dead(load) => load.factor = factor,
+            Self::Pressure(load) => load.local_mut().factor = factor,
+            Self::Moment(load) => load.local_mut().factor = factor,
+        }
+    }
+
+    fn energy(&self) -> &dyn Energy {
+        match self {
+            Self::Dead(load) => load,
+            Self::Pressure(load) => load,
+            Self::Moment(load) => load,
+        }
+    }
+}
+
+/// All loads of a scene as one energy.
+#[derive(Default)]
+pub struct Loads {
+    /// The loads.
+    pub loads: Vec<Load>,
+}
+
+impl Loads {
+    fn moments(&self) -> impl Iterator<Item = &EdgeMoment> {
+        self.loads.iter().filter_map(|load| match load {
+            Load::Moment(load) => Some(load.local()),
+            _ => None,
+        })
+    }
+
+    fn moments_mut(&mut self) -> impl Iterator<Item = &mut EdgeMoment> {
+        self.loads.iter_mut().filter_map(|load| match load {
+            Load::Moment(load) => Some(load.local_mut()),
+            _ => None,
+        })
+    }
+
+    /// Measures the turning of directors from `q` on: the angles of one step stay small, their sum may pass any number
+    /// of turns.
+    pub fn rebase(&mut self, q: &[f64]) {
+        self.moments_mut().for_each(|moment| moment.rebase(q));
+    }
+
+    /// How far the directors of the edges under moments had turned [rad] at the last [`Self::rebase`].
+    pub fn turned(&self) -> Vec<f64> {
+        self.moments()
+            .flat_map(|moment| moment.edges.iter().map(|edge| edge.turned))
+            .collect()
+    }
+
+    /// Goes on from angles that [`Self::turned`] gave after a [`Self::rebase`] at `q`.
+    ///
+    /// # Panics
+    /// If there are fewer than edges.
+    pub fn restore_turned(&mut self, turned: &[f64], q: &[f64]) {
+        self.rebase(q);
+        let edges = self.moments_mut().flat_map(|moment| &mut moment.edges);
+        for (index, edge) in edges.enumerate() {
+            edge.turned = turned[index];
+        }
+    }
+}
+
+impl Energy for Loads {
+    fn name(&self) -> &'static str {
+        "loads"
+    }
+
+    fn value(&self, q: &[f64]) -> f64 {
+        self.loads.iter().map(|load| load.energy().value(q)).sum()
+    }
+
+    fn add_gradient(&self, q: &[f64], gradient: &mut [f64]) {
+        for load in &self.loads {
+            load.energy().add_gradient(q, gradient);
+        }
+    }
+
+    fn add_derivatives(
+        &self,
+        q: &[f64],
+        projection: PsdProjection,
+        gradient: &mut [f64],
+        hessian: &mut HessianBuilder<'_>,
+    ) {
+        for load in &self.loads {
+            (load.energy()).add_derivatives(q, projection, gradient, hessian);
+        }
+    }
+
+    fn add_to_pattern(&self, q: &[f64], pattern: &mut PatternBuilder) {
+        for load in &self.loads {
+            load.energy().add_to_pattern(q, pattern);
+        }
+    }
+
+    fn bind(&mut self, pattern: &Pattern) {
+        for load in &mut self.loads {
+            match load {
+                Load::Dead(_) => {}
+                Load::Pressure(load) => load.bind(pattern),
+                Load::Moment(load) => load.bind(pattern),
+            }
+        }
+    }
+
+    fn worst_element(&self, q: &[f64]) -> Option<WorstElement> {
+        let worst = self
+            .loads
+            .iter()
+            .filter_map(|load| load.energy().worst_element(q));
+        worst.reduce(|a, b| match b.gradient_norm <= a.gradient_norm {
+            true => a,
+            false => b,
+        })
+    }
+}
