@@ -3,11 +3,13 @@
 use koiter::Vec3;
 use koiter::assembly::{Assembled, Dof, DofLayout, Energy};
 use koiter::energy::bending::{
-    AngleProfile, DiscreteShellsHinge, Identity, MidEdgeBending, Sine, Tangent, bending_stencils,
+    AngleProfile, CorotationalEdge, CorotationalFace, DiscreteShells, FaceBending, Identity,
+    LaplacianMesh, MidEdgeAverage, MidEdgeBending, QuadraticHinge, QuadraticVertex, Sine, Tangent,
+    bending_stencils,
 };
 use koiter::geometry::{Wing, hinge_angle};
 use koiter::integrate::relax_directors;
-use koiter::material::{Homogeneous, StVenantKirchhoff};
+use koiter::material::{Homogeneous, Section, StVenantKirchhoff};
 use koiter::mesh::{EdgeId, Surface, TriMesh};
 use koiter::rest::{RestFrame, rest_frames};
 use nalgebra::{Matrix3, Vector3};
@@ -20,6 +22,7 @@ const ROUND_OFF: f64 = 1e-12;
 /// Both codes stop their minimisation over directors when angles are found to about 1e-9.
 const DIRECTOR_TOLERANCE: f64 = 1e-7;
 
+type Average = Assembled<FaceBending<MidEdgeAverage<Homogeneous<StVenantKirchhoff>>>, 18, 6>;
 type Bending<P> = Assembled<MidEdgeBending<P, Homogeneous<StVenantKirchhoff>>, 21, 9>;
 
 fn numbers(value: &Value) -> Vec<f64> {
@@ -123,16 +126,40 @@ impl Patch {
         gradient
     }
 
-    fn director_bending<P: AngleProfile>(&self, rest_forms: Vec<Vector3<f64>>) -> Bending<P> {
+    fn section(&self) -> Homogeneous<StVenantKirchhoff> {
         let [h, e, nu] = ["thickness", "youngs_modulus", "poissons_ratio"]
             .map(|k| self.data[k].as_f64().unwrap());
+        Homogeneous::uniform(StVenantKirchhoff::new(e, nu), h, self.frames.len())
+    }
+
+    fn rigidity(&self) -> Vec<f64> {
+        let section = self.section();
+        (0..self.frames.len())
+            .map(|f| section.flexural_rigidity(f))
+            .collect()
+    }
+
+    fn is_curved(&self) -> bool {
+        self.data["rest"] == "curved"
+    }
+
+    fn director_bending<P: AngleProfile>(&self, rest_forms: Vec<Vector3<f64>>) -> Bending<P> {
         let stencils = bending_stencils(&self.surface.mesh, Dof(0), self.angles);
-        let material = StVenantKirchhoff::new(e, nu);
-        let section = Homogeneous::uniform(material, h, self.frames.len());
         Assembled::new(
-            MidEdgeBending::new(stencils, self.frames.clone(), rest_forms, section),
+            MidEdgeBending::new(stencils, self.frames.clone(), rest_forms, self.section()),
             &self.layout,
         )
+    }
+
+    fn average(&self, rest_forms: Vec<Vector3<f64>>) -> Average {
+        let stencils = bending_stencils(&self.surface.mesh, Dof(0), self.angles);
+        let faces = FaceBending::<MidEdgeAverage<_>>::new(
+            stencils,
+            self.frames.clone(),
+            rest_forms,
+            self.section(),
+        );
+        Assembled::new(faces, &self.layout)
     }
 
     fn flat_forms(&self) -> Vec<Vector3<f64>> {
@@ -147,7 +174,7 @@ impl Patch {
 
     /// The rest second forms that the data's `rest_q` stand for.
     fn rest_forms(&self, model: &Value) -> Vec<Vector3<f64>> {
-        if self.data["rest"] != "curved" {
+        if !self.is_curved() {
             return self.flat_forms();
         }
         let q = points(&model["rest_q"]);
@@ -251,28 +278,97 @@ fn hinge_angles_are_those_of_the_reference() {
     }
 }
 
-#[test]
-fn hinge_energies_and_gradients_are_those_of_the_reference() {
+/// Checks energy and gradient of a model of positions only against `key` of every patch.
+fn check_positions(key: &str, energy: impl Fn(&Patch) -> Box<dyn Energy>) {
     for patch in patches() {
-        let [h, e, nu] = ["thickness", "youngs_modulus", "poissons_ratio"]
-            .map(|k| patch.data[k].as_f64().unwrap());
-        let rigidity = e * h.powi(3) / (12.0 * (1.0 - nu * nu));
-        let curved = patch.data["rest"] == "curved";
-        let hinge = DiscreteShellsHinge::new(&patch.rest, Dof(0), &patch.frames, curved, rigidity);
-        let hinge = Assembled::new(hinge, &patch.layout);
+        let bending = energy(&patch);
         let q = patch.q(&patch.surface.positions, &[]);
-        let model = &patch.data["models"]["DS(theta)"];
-        let energy = model["energy"].as_f64().unwrap();
+        let model = &patch.data["models"][key];
+        let expected = model["energy"].as_f64().unwrap();
+        let found = bending.value(&q);
         assert!(
-            (hinge.value(&q) - energy).abs() < ROUND_OFF * energy,
-            "{}: {}",
-            patch.name,
-            hinge.value(&q)
+            (found - expected).abs() < ROUND_OFF * expected,
+            "{} {key}: {found} {expected}",
+            patch.name
         );
         let expected = numbers(&model["gradient_by_positions"]);
-        let error = difference(&patch.gradient(&hinge, &q)[..expected.len()], &expected);
-        assert!(error < ROUND_OFF, "{}: gradient {error:.1e}", patch.name);
+        let gradient = patch.gradient(bending.as_ref(), &q);
+        let error = difference(&gradient[..expected.len()], &expected);
+        assert!(
+            error < ROUND_OFF,
+            "{} {key}: gradient {error:.1e}",
+            patch.name
+        );
+        assert!(
+            gradient[expected.len()..]
+                .iter()
+                .all(|moment| *moment == 0.0)
+        );
     }
+}
+
+fn hinges<P: AngleProfile + 'static>(p: &Patch) -> Box<dyn Energy> {
+    let (frames, rigidity) = (&p.frames, p.rigidity());
+    let hinges = DiscreteShells::<P>::new(&p.rest, Dof(0), frames, p.is_curved(), &rigidity);
+    Box::new(Assembled::new(hinges, &p.layout))
+}
+
+fn vertices(p: &Patch, laplacian: LaplacianMesh) -> Box<dyn Energy> {
+    let (frames, rigidity) = (&p.frames, p.rigidity());
+    Box::new(QuadraticVertex::new(
+        &p.rest,
+        Dof(0),
+        &p.layout,
+        frames,
+        &rigidity,
+        laplacian,
+    ))
+}
+
+#[test]
+fn hinge_energies_and_gradients_are_those_of_the_reference() {
+    check_positions("DS(theta)", hinges::<Identity>);
+    check_positions("DS(tan)", hinges::<Tangent>);
+}
+
+#[test]
+fn corotational_energies_and_gradients_are_those_of_the_reference() {
+    check_positions("CH(ES)", |p| {
+        let (frames, rigidity) = (&p.frames, p.rigidity());
+        let edges = CorotationalEdge::new(&p.rest, Dof(0), frames, p.is_curved(), &rigidity);
+        Box::new(Assembled::new(edges, &p.layout))
+    });
+    check_positions("CH(FS)", |p| {
+        let stencils = bending_stencils(&p.surface.mesh, Dof(0), p.angles);
+        let (curved, rigidity) = (p.is_curved(), p.rigidity());
+        let faces =
+            FaceBending::<CorotationalFace>::new(&p.rest, stencils, &p.frames, curved, &rigidity);
+        Box::new(Assembled::new(faces, &p.layout))
+    });
+}
+
+#[test]
+fn quadratic_energies_and_gradients_are_those_of_the_reference() {
+    check_positions("QB(CR)", |p| {
+        let hinges = QuadraticHinge::new(&p.rest, Dof(0), &p.frames, &p.rigidity());
+        Box::new(Assembled::new(hinges, &p.layout))
+    });
+    check_positions("QB(PL)", |p| vertices(p, LaplacianMesh::Extrinsic));
+    check_positions("QB(int)", |p| vertices(p, LaplacianMesh::IntrinsicDelaunay));
+}
+
+#[test]
+fn averaged_normals_have_the_energies_and_gradients_of_the_reference() {
+    check_positions("M-e.Av.", |p| {
+        let mut faces = p.average(p.flat_forms());
+        if p.is_curved() {
+            let at_rest = p.q(&p.rest.positions, &[]);
+            let form = |f| faces.local().second_form(f, &faces.gather(f, &at_rest));
+            let forms = (0..p.rest.mesh.num_faces()).map(form).collect();
+            faces.local_mut().set_rest_forms(forms);
+        }
+        Box::new(faces)
+    });
 }
 
 #[test]

@@ -4,14 +4,16 @@ use koiter::Vec3;
 use koiter::assembly::{Assembled, Dof, DofLayout, Energy, LocalEnergy, LocalHessian};
 use koiter::energy::Membrane;
 use koiter::energy::bending::{
-    AngleProfile, ClampedEdge, DirectorClamp, DiscreteKirchhoff, DiscreteShellsHinge, Identity,
-    MidEdgeBending, Sine, Tangent, bending_stencils, vertex_normals,
+    AngleProfile, ClampedEdge, CorotationalEdge, CorotationalFace, DirectorClamp,
+    DiscreteKirchhoff, DiscreteShells, FaceBending, Identity, LaplacianMesh, MidEdgeAverage,
+    MidEdgeBending, QuadraticHinge, QuadraticVertex, Sine, Tangent, bending_stencils,
+    vertex_normals,
 };
 use koiter::energy::loads::{EdgeMoment, Pressure, TurnedEdge};
 use koiter::material::{Homogeneous, StVenantKirchhoff};
 use koiter::mesh::{Surface, TriMesh};
 use koiter::rest::{RestFrame, rest_frames};
-use koiter::testing::{Claims, check};
+use koiter::testing::{Claims, check, check_claims, check_global};
 use nalgebra::{SVector, Vector3};
 
 const THICKNESS: f64 = 0.3;
@@ -91,8 +93,46 @@ fn membrane(s: &Setup) -> Membrane<Homogeneous<StVenantKirchhoff>> {
     Membrane::new(&s.rest.mesh, Dof(0), s.frames.clone(), section(s))
 }
 
-fn hinge(s: &Setup, curved: bool) -> DiscreteShellsHinge {
-    DiscreteShellsHinge::new(&s.rest, Dof(0), &s.frames, curved, 0.7)
+/// A rigidity that differs from face to face.
+fn rigidity(s: &Setup) -> Vec<f64> {
+    (0..s.frames.len()).map(|f| 0.7 + 0.1 * f as f64).collect()
+}
+
+fn hinge<P: AngleProfile>(s: &Setup, curved: bool) -> DiscreteShells<P> {
+    DiscreteShells::new(&s.rest, Dof(0), &s.frames, curved, &rigidity(s))
+}
+
+fn corotational_edge(s: &Setup, curved: bool) -> CorotationalEdge {
+    CorotationalEdge::new(&s.rest, Dof(0), &s.frames, curved, &rigidity(s))
+}
+
+fn corotational_face(s: &Setup, curved: bool) -> FaceBending<CorotationalFace> {
+    let stencils = bending_stencils(&s.rest.mesh, Dof(0), s.edges);
+    FaceBending::<CorotationalFace>::new(&s.rest, stencils, &s.frames, curved, &rigidity(s))
+}
+
+type Average = FaceBending<MidEdgeAverage<Homogeneous<StVenantKirchhoff>>>;
+
+fn mid_edge_average(s: &Setup, curved: bool) -> Average {
+    let stencils = bending_stencils(&s.rest.mesh, Dof(0), s.edges);
+    let zero = vec![Vector3::zeros(); s.rest.mesh.num_faces()];
+    let mut bending = Average::new(stencils, s.frames.clone(), zero, section(s));
+    if curved {
+        let gathered = Assembled::new(mid_edge_average(s, false), &s.layout);
+        let form = |f| bending.second_form(f, &gathered.gather(f, &s.at_rest));
+        let forms = (0..s.rest.mesh.num_faces()).map(form).collect();
+        bending.set_rest_forms(forms);
+    }
+    bending
+}
+
+fn quadratic_hinge(s: &Setup) -> QuadraticHinge {
+    QuadraticHinge::new(&s.rest, Dof(0), &s.frames, &rigidity(s))
+}
+
+fn quadratic_vertex(s: &Setup, laplacian: LaplacianMesh) -> QuadraticVertex {
+    let rigidity = rigidity(s);
+    QuadraticVertex::new(&s.rest, Dof(0), &s.layout, &s.frames, &rigidity, laplacian)
 }
 
 fn mid_edge<P: AngleProfile>(
@@ -190,18 +230,77 @@ fn dkt_conforms() {
     }
 }
 
-#[test]
-fn the_hinge_conforms() {
+fn check_hinge<P: AngleProfile>() {
     let s = patch(1.0);
     for curved in [false, true] {
-        check(
-            hinge(&s, curved),
-            &s.layout,
-            &s.q,
-            |e, h, q| e.formula(h, q),
-            &claims(&s, curved),
-        )
-        .unwrap();
+        let energy = hinge::<P>(&s, curved);
+        let claims = claims(&s, curved);
+        check(energy, &s.layout, &s.q, |e, h, q| e.formula(h, q), &claims).unwrap();
+    }
+}
+
+#[test]
+fn ds_theta_conforms() {
+    check_hinge::<Identity>();
+}
+
+#[test]
+fn ds_tan_conforms() {
+    check_hinge::<Tangent>();
+}
+
+#[test]
+fn ch_es_conforms() {
+    let s = patch(1.0);
+    for curved in [false, true] {
+        let energy = corotational_edge(&s, curved);
+        let claims = claims(&s, curved);
+        check(energy, &s.layout, &s.q, |e, h, q| e.formula(h, q), &claims).unwrap();
+    }
+}
+
+#[test]
+fn ch_fs_conforms() {
+    let s = patch(1.0);
+    for curved in [false, true] {
+        let energy = corotational_face(&s, curved);
+        let claims = claims(&s, curved);
+        check(energy, &s.layout, &s.q, |e, f, q| e.formula(f, q), &claims).unwrap();
+    }
+}
+
+#[test]
+fn me_average_conforms() {
+    let s = patch(1.0);
+    let section = section(&s);
+    for curved in [false, true] {
+        let formula = |e: &Average, f: usize, q: &_| {
+            e.formula(f, q, |change| section.bend_formula(f, change))
+        };
+        let energy = mid_edge_average(&s, curved);
+        check(energy, &s.layout, &s.q, formula, &claims(&s, curved)).unwrap();
+    }
+}
+
+#[test]
+fn qb_cr_conforms() {
+    for height in [0.0, 1.0] {
+        let s = patch(height);
+        let claims = claims(&s, height == 0.0);
+        let energy = quadratic_hinge(&s);
+        check(energy, &s.layout, &s.q, |e, h, q| e.formula(h, q), &claims).unwrap();
+    }
+}
+
+#[test]
+fn qb_pl_and_qb_int_conform() {
+    for laplacian in [LaplacianMesh::Extrinsic, LaplacianMesh::IntrinsicDelaunay] {
+        for height in [0.0, 1.0] {
+            let s = patch(height);
+            let mut energy = quadratic_vertex(&s, laplacian);
+            check_global(&mut energy, &s.layout, &s.q).unwrap();
+            check_claims(&energy, &s.layout, &s.q, &claims(&s, height == 0.0)).unwrap();
+        }
     }
 }
 
@@ -401,10 +500,16 @@ fn energies_do_not_depend_on_the_numbering() {
         };
     }
     other.q = q;
-    let energies = |s: &Setup| -> [Box<dyn Energy>; 3] {
+    let energies = |s: &Setup| -> [Box<dyn Energy>; 9] {
         [
             Box::new(Assembled::new(mid_edge::<Tangent>(s, false), &s.layout)),
-            Box::new(Assembled::new(hinge(s, true), &s.layout)),
+            Box::new(Assembled::new(mid_edge_average(s, true), &s.layout)),
+            Box::new(Assembled::new(hinge::<Tangent>(s, true), &s.layout)),
+            Box::new(Assembled::new(corotational_edge(s, true), &s.layout)),
+            Box::new(Assembled::new(corotational_face(s, true), &s.layout)),
+            Box::new(Assembled::new(quadratic_hinge(s), &s.layout)),
+            Box::new(quadratic_vertex(s, LaplacianMesh::Extrinsic)),
+            Box::new(quadratic_vertex(s, LaplacianMesh::IntrinsicDelaunay)),
             Box::new(Assembled::new(membrane(s), &s.layout)),
         ]
     };
@@ -427,5 +532,27 @@ fn director_models_share_their_hessian_at_a_flat_rest_state() {
             .hessian;
         assert!(bac.norm() > 0.0);
         assert!((bac - dcs).norm() < 1e-14 * bac.norm() && (bac - dso).norm() < 1e-14 * bac.norm());
+    }
+}
+
+#[test]
+fn discrete_shells_and_quadratic_bending_share_their_hessian_at_a_flat_rest_state() {
+    let s = patch(0.0);
+    let quadratic = quadratic_hinge(&s);
+    for h in 0..quadratic.num_stencils() {
+        let at_rest = Assembled::new(quadratic_hinge(&s), &s.layout).gather(h, &s.at_rest);
+        let theta = hinge::<Identity>(&s, false).hessian(h, &at_rest).hessian;
+        let tan = hinge::<Tangent>(&s, false).hessian(h, &at_rest).hessian;
+        // An angle resists in the direction of the normal, here z; a vector bends alike in all three.
+        let bent = quadratic.hessian(h, &at_rest).hessian;
+        assert!(theta.norm() > 0.0);
+        assert!((theta - tan).norm() < 1e-14 * theta.norm());
+        for (i, j) in (0..12).flat_map(|i| (0..12).map(move |j| (i, j))) {
+            let expected = if i % 3 == 2 { bent[(i, j)] } else { 0.0 };
+            assert!(
+                (theta[(i, j)] - expected).abs() < 1e-13 * bent.amax(),
+                "{h}: {i} {j}"
+            );
+        }
     }
 }

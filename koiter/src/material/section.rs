@@ -16,6 +16,20 @@ pub trait Section: Send + Sync + Debug {
     fn stretch(&self, face: usize, strain: &Vector3<f64>) -> Response;
     /// The response of face `face` to the change of curvature `(κ₁₁, κ₂₂, κ₁₂)` [1/m].
     fn bend(&self, face: usize, curvature_change: &Vector3<f64>) -> Response;
+    /// Stiffness of face `face` against bending about one axis without bending about the other, `E h³ / (12 (1 − ν²))` of a
+    /// homogeneous isotropic shell [N·m]; the mean over all directions of an orthotropic one. For models that know one
+    /// stiffness only.
+    fn flexural_rigidity(&self, face: usize) -> f64 {
+        let tangent = self.bend(face, &Vector3::zeros()).tangent;
+        // Of fourth degree in cosine and sine of the direction: three directions, 60° apart, have its mean.
+        let along = |direction: f64| {
+            let (sin, cos) = direction.sin_cos();
+            let curvature = Vector3::new(cos * cos, sin * sin, cos * sin);
+            curvature.dot(&(tangent * curvature))
+        };
+        let third = std::f64::consts::FRAC_PI_3;
+        (along(0.0) + along(third) + along(2.0 * third)) / 3.0
+    }
 }
 
 impl<S: Section + ?Sized> Section for Arc<S> {
@@ -26,6 +40,9 @@ impl<S: Section + ?Sized> Section for Arc<S> {
     #[inline]
     fn bend(&self, face: usize, curvature_change: &Vector3<f64>) -> Response {
         self.as_ref().bend(face, curvature_change)
+    }
+    fn flexural_rigidity(&self, face: usize) -> f64 {
+        self.as_ref().flexural_rigidity(face)
     }
 }
 

@@ -5,6 +5,10 @@
 //! symmetric form X in the basis of the edges, `D⁻ᵀ X D⁻¹`. There an isotropic material has the same constants on every
 //! face, and `tr(Ī⁻¹ X)` is the trace.
 
+mod intrinsic;
+
+pub use intrinsic::IntrinsicTriangulation;
+
 use crate::Vec3;
 use crate::mesh::Surface;
 

@@ -18,12 +18,19 @@ pub struct BendingModelInfo {
 
 impl BendingModel {
     /// All models.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 13] = [
         Self::Bac,
         Self::Dcs,
         Self::Dso,
         Self::Dkt,
+        Self::MeAverage,
         Self::DsTheta,
+        Self::DsTan,
+        Self::ChEs,
+        Self::ChFs,
+        Self::QbCr,
+        Self::QbPl,
+        Self::QbInt,
         Self::None,
     ];
 
@@ -54,11 +61,53 @@ impl BendingModel {
                 unknowns: ExtraUnknowns::VertexDirectors,
                 source: "better-bending-2026, Eq. 28, after batoz-1980",
             },
+            Self::MeAverage => BendingModelInfo {
+                name: "me-average",
+                what: "Averaged mid-edge normals: positions only, any material; converges on aligned regular meshes only",
+                unknowns: ExtraUnknowns::None,
+                source: "better-bending-2026, Eq. 36, after chen-2018",
+            },
             Self::DsTheta => BendingModelInfo {
                 name: "ds-theta",
                 what: "Discrete Shells hinge, quadratic in the angle: cheap, the familiar baseline; does not converge",
                 unknowns: ExtraUnknowns::None,
                 source: "better-bending-2026, Eq. 7, after grinspun-2003",
+            },
+            Self::DsTan => BendingModelInfo {
+                name: "ds-tan",
+                what: "Discrete Shells hinge, tangent of the half angle: hinges never close; does not converge",
+                unknowns: ExtraUnknowns::None,
+                source: "better-bending-2026, Eq. 8, after tamstorf-2013",
+            },
+            Self::ChEs => BendingModelInfo {
+                name: "ch-es",
+                what: "Corotational hinge, curvature of edges: converges on aligned regular meshes only",
+                unknowns: ExtraUnknowns::None,
+                source: "better-bending-2026, Eq. 9, after liang-2025",
+            },
+            Self::ChFs => BendingModelInfo {
+                name: "ch-fs",
+                what: "Corotational hinge, curvatures of faces: converges on aligned regular meshes only",
+                unknowns: ExtraUnknowns::None,
+                source: "better-bending-2026, Eq. 13, after liang-2025",
+            },
+            Self::QbCr => BendingModelInfo {
+                name: "qb-cr",
+                what: "Quadratic bending of hinges: constant Hessian, cheapest; flat rest shapes; does not converge",
+                unknowns: ExtraUnknowns::None,
+                source: "better-bending-2026, Eq. 15, after bergou-2006",
+            },
+            Self::QbPl => BendingModelInfo {
+                name: "qb-pl",
+                what: "Quadratic bending of vertices: constant Hessian; flat rest shapes; close on good meshes, buckles early",
+                unknowns: ExtraUnknowns::None,
+                source: "better-bending-2026, Eq. 39, after bergou-2006, stein-2018",
+            },
+            Self::QbInt => BendingModelInfo {
+                name: "qb-int",
+                what: "Quadratic bending of vertices, intrinsic Delaunay Laplacian: as qb-pl, also on bad meshes",
+                unknowns: ExtraUnknowns::None,
+                source: "better-bending-2026, Eq. 39, after sharp-2020",
             },
             Self::None => BendingModelInfo {
                 name: "none",

@@ -6,12 +6,13 @@ use nalgebra::Vector3;
 
 use super::assemble::{BuildError, Unknowns, write_points};
 use super::model::{BendingModel, Model, Shell};
+use super::position_bending::PositionBending;
 use super::vertex_directors::kirchhoff_bending;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::energy::Membrane;
 use crate::energy::bending::{
-    AngleProfile, DirectorShape, DiscreteShellsHinge, Identity, MidEdgeBending, Sine, Tangent,
-    bending_stencils,
+    AngleProfile, DirectorShape, ExtraUnknowns, Identity, LaplacianMesh, MidEdgeBending, Sine,
+    Tangent, bending_stencils,
 };
 use crate::integrate::{ShellPart, relax_directors};
 use crate::material::Section;
@@ -67,18 +68,47 @@ impl Elastic {
         );
         self.energies
             .push(Box::new(Assembled::new(membrane, layout)));
-        let bending = match shell.bending {
-            BendingModel::Bac => director_bending::<Tangent>(shell, &mut part, layout, q, masses)?,
-            BendingModel::Dcs => director_bending::<Sine>(shell, &mut part, layout, q, masses)?,
-            BendingModel::Dso => director_bending::<Identity>(shell, &mut part, layout, q, masses)?,
-            BendingModel::Dkt => Some(kirchhoff_bending(shell, &mut part, layout, q, masses)?),
-            BendingModel::DsTheta => Some(hinge_bending(shell, &part, layout)),
-            BendingModel::None => None,
-        };
+        let bending = bending_energy(shell, &mut part, layout, q, masses)?;
         self.energies.extend(bending);
+        if shell.rest_curved && part.extra == ExtraUnknowns::None {
+            // Without directors the forms are for display only, by bisectors at rest as deformed.
+            let mut rest_q = q.to_vec();
+            write_points(&mut rest_q, part.first_vertex, &shell.rest_positions);
+            part.rest_forms = (0..part.mesh.num_faces())
+                .map(|face| part.second_form(face, &rest_q))
+                .collect();
+        }
         self.parts.push(part);
         Ok(())
     }
+}
+
+/// The bending energy of a shell by its model.
+fn bending_energy(
+    shell: &Shell,
+    part: &mut ShellPart,
+    layout: &DofLayout,
+    q: &mut [f64],
+    masses: &mut [f64],
+) -> Result<Option<Box<dyn Energy>>, RestError> {
+    let positions = |part| PositionBending::new(shell, part, layout);
+    Ok(match shell.bending {
+        BendingModel::Bac => director_bending::<Tangent>(shell, part, layout, q, masses)?,
+        BendingModel::Dcs => director_bending::<Sine>(shell, part, layout, q, masses)?,
+        BendingModel::Dso => director_bending::<Identity>(shell, part, layout, q, masses)?,
+        BendingModel::Dkt => Some(kirchhoff_bending(shell, part, layout, q, masses)?),
+        BendingModel::MeAverage => Some(positions(part).mid_edge_average()),
+        BendingModel::DsTheta => Some(positions(part).discrete_shells::<Identity>()),
+        BendingModel::DsTan => Some(positions(part).discrete_shells::<Tangent>()),
+        BendingModel::ChEs => Some(positions(part).corotational_edge()),
+        BendingModel::ChFs => Some(positions(part).corotational_face()),
+        BendingModel::QbCr => Some(positions(part).quadratic_hinge()),
+        BendingModel::QbPl => Some(positions(part).quadratic_vertex(LaplacianMesh::Extrinsic)),
+        BendingModel::QbInt => {
+            Some(positions(part).quadratic_vertex(LaplacianMesh::IntrinsicDelaunay))
+        }
+        BendingModel::None => None,
+    })
 }
 
 /// How the directors of edges depend on tilts.
@@ -86,7 +116,16 @@ fn director_shape(bending: BendingModel) -> DirectorShape {
     match bending {
         BendingModel::Bac => DirectorShape::Tangent,
         BendingModel::Dcs | BendingModel::Dso => DirectorShape::Unit,
-        BendingModel::Dkt | BendingModel::DsTheta | BendingModel::None => DirectorShape::Bisector,
+        BendingModel::Dkt
+        | BendingModel::MeAverage
+        | BendingModel::DsTheta
+        | BendingModel::DsTan
+        | BendingModel::ChEs
+        | BendingModel::ChFs
+        | BendingModel::QbCr
+        | BendingModel::QbPl
+        | BendingModel::QbInt
+        | BendingModel::None => DirectorShape::Bisector,
     }
 }
 
@@ -125,20 +164,6 @@ fn add_vertex_masses(part: &ShellPart, density: f64, masses: &mut [f64]) {
                 .for_each(|m| *m += third);
         }
     }
-}
-
-fn hinge_bending(shell: &Shell, part: &ShellPart, layout: &DofLayout) -> Box<dyn Energy> {
-    let nu = shell.poissons_ratio;
-    let rigidity = shell.youngs_modulus * shell.thickness.powi(3) / (12.0 * (1.0 - nu * nu));
-    let rest = rest_surface(shell);
-    let hinge = DiscreteShellsHinge::new(
-        &rest,
-        part.first_vertex,
-        &part.frames,
-        shell.rest_curved,
-        rigidity,
-    );
-    Box::new(Assembled::new(hinge, layout))
 }
 
 /// Bending with mid-edge directors: finds the rest directors where the rest shape is curved, relaxes the directors of

@@ -24,8 +24,22 @@ pub enum BendingModel {
     Dso,
     /// Discrete Kirchhoff triangle: unit directors at the vertices.
     Dkt,
+    /// Averaged mid-edge normals: the director models without directors.
+    MeAverage,
     /// Discrete Shells hinge, energy quadratic in the hinge angle.
     DsTheta,
+    /// Discrete Shells hinge with the tangent of the half angle: a barrier against closed hinges.
+    DsTan,
+    /// Corotational hinge, curvature of edges.
+    ChEs,
+    /// Corotational hinge, curvatures of faces.
+    ChFs,
+    /// Quadratic bending with Crouzeix–Raviart elements, for flat rest shapes.
+    QbCr,
+    /// Quadratic bending with the Laplacian at vertices and its boundary term, for flat rest shapes.
+    QbPl,
+    /// The same with the Laplacian of the intrinsic Delaunay triangulation.
+    QbInt,
     /// No bending energy: a pure membrane.
     None,
 }

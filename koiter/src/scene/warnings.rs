@@ -2,7 +2,7 @@
 
 use super::error::Warning;
 use super::free_parts::FreePart;
-use super::model::{Model, Shell};
+use super::model::{BendingModel, Model, Shell};
 use super::spec::{MeshSpec, SceneSpec, Units};
 
 /// Softer than any gel, harder than diamond.
@@ -39,6 +39,7 @@ pub(super) fn find(model: &Model, spec: &SceneSpec) -> Vec<Warning> {
         }
         warnings.extend(check_size(shell, &path, &typed.mesh));
         warnings.extend(check_thickness(shell, &path));
+        warnings.extend(check_bending(shell, &path));
     }
     if model.gravity.norm() > LARGE_GRAVITY {
         let message = format!("a gravity of {:.2e} m/s² is unusual", model.gravity.norm());
@@ -111,6 +112,25 @@ fn check_thickness(shell: &Shell, path: &str) -> Option<Warning> {
     );
     let help = "thicknesses are in metres: 1 mm is 1e-3; triangles should be much larger than the thickness";
     Some(warning(message, format!("{path}.thickness"), help))
+}
+
+/// A bending model that is not made for this rest shape.
+fn check_bending(shell: &Shell, path: &str) -> Option<Warning> {
+    let is_flat_only = matches!(
+        shell.bending,
+        BendingModel::QbCr | BendingModel::QbPl | BendingModel::QbInt
+    );
+    if !is_flat_only || !shell.rest_curved {
+        return None;
+    }
+    let message = format!(
+        "shell '{}' has a curved rest shape, which '{}' ignores: it bends towards a flat one",
+        shell.name,
+        shell.bending.info().name
+    );
+    let help =
+        "quadratic bending is for flat rest shapes; bac, dcs, dso and ds-theta keep a curved one";
+    Some(warning(message, format!("{path}.bending"), help))
 }
 
 fn warning(message: String, path: String, help: &str) -> Warning {

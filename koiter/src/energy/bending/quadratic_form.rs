@@ -1,8 +1,8 @@
 //! Sums of products of linear functionals, with a positive semidefinite part of each term.
 //!
-//! The second derivatives of altitudes and hinge angles are sums `Σ k u v` of products of functionals that are
-//! orthogonal to each other ([`crate::geometry::Wing`]). Such a product has the eigenvalues ±k|u||v|/2, so its positive
-//! part is known in closed form and no eigen-decomposition is needed.
+//! The second derivatives of altitudes and hinge angles are sums `Σ k u v` of products of functionals
+//! ([`crate::geometry::Wing`]). Scaled to equal length, `4 u v = (u + v)² − (u − v)²` and the two squares are orthogonal,
+//! so the positive part of a product is known in closed form and no eigen-decomposition is needed.
 
 use crate::Vec3;
 use crate::geometry::Wing;
@@ -45,7 +45,7 @@ impl QuadraticForm {
         }
     }
 
-    /// Adds `k u v` for orthogonal functionals u, v.
+    /// Adds `k u v`.
     pub(super) fn add_product(&mut self, k: f64, u: &Functional, v: &Functional) {
         if self.kept > 0.0 {
             let half = 0.5 * k * self.kept;

@@ -218,6 +218,12 @@ fn implausible_numbers_are_warned_about_not_refused() {
             "shell.cloth.thickness",
             "1 mm is 1e-3",
         ),
+        (
+            "\"cotton\"",
+            "\"cotton\"\nbending = \"qb-pl\"\nrest = \"mesh\"",
+            "shell.cloth.bending",
+            "flat rest shapes",
+        ),
     ];
     for (from, to, path, words) in cases {
         let scene = build(&SCENE.replacen(from, to, 1)).unwrap();

@@ -1,0 +1,100 @@
+//! Bending energies of a shell whose model has no unknowns beside positions.
+
+use nalgebra::Vector3;
+
+use super::assemble::write_points;
+use super::elastic::rest_surface;
+use super::model::Shell;
+use crate::assembly::{Assembled, DofLayout, Energy};
+use crate::energy::bending::{
+    AngleProfile, CorotationalEdge, CorotationalFace, DiscreteShells, FaceBending, LaplacianMesh,
+    MidEdgeAverage, QuadraticHinge, QuadraticVertex,
+};
+use crate::integrate::ShellPart;
+use crate::mesh::Surface;
+
+/// What these models are made of.
+pub(super) struct PositionBending<'a> {
+    part: &'a ShellPart,
+    layout: &'a DofLayout,
+    rest: Surface,
+    /// Whether the rest shape is curved.
+    curved: bool,
+    /// C of every face [N·m].
+    rigidity: Vec<f64>,
+}
+
+impl<'a> PositionBending<'a> {
+    pub(super) fn new(shell: &Shell, part: &'a ShellPart, layout: &'a DofLayout) -> Self {
+        let num_faces = part.mesh.num_faces();
+        Self {
+            part,
+            layout,
+            rest: rest_surface(shell),
+            curved: shell.rest_curved,
+            rigidity: (0..num_faces)
+                .map(|face| part.section.flexural_rigidity(face))
+                .collect(),
+        }
+    }
+
+    pub(super) fn discrete_shells<P: AngleProfile + 'static>(&self) -> Box<dyn Energy> {
+        let (first, frames) = (self.part.first_vertex, &self.part.frames);
+        let hinges =
+            DiscreteShells::<P>::new(&self.rest, first, frames, self.curved, &self.rigidity);
+        Box::new(Assembled::new(hinges, self.layout))
+    }
+
+    pub(super) fn corotational_edge(&self) -> Box<dyn Energy> {
+        let (first, frames) = (self.part.first_vertex, &self.part.frames);
+        let edges = CorotationalEdge::new(&self.rest, first, frames, self.curved, &self.rigidity);
+        Box::new(Assembled::new(edges, self.layout))
+    }
+
+    pub(super) fn corotational_face(&self) -> Box<dyn Energy> {
+        let (stencils, frames) = (self.part.stencils.clone(), &self.part.frames);
+        let faces = FaceBending::<CorotationalFace>::new(
+            &self.rest,
+            stencils,
+            frames,
+            self.curved,
+            &self.rigidity,
+        );
+        Box::new(Assembled::new(faces, self.layout))
+    }
+
+    pub(super) fn quadratic_hinge(&self) -> Box<dyn Energy> {
+        let (first, frames) = (self.part.first_vertex, &self.part.frames);
+        let hinges = QuadraticHinge::new(&self.rest, first, frames, &self.rigidity);
+        Box::new(Assembled::new(hinges, self.layout))
+    }
+
+    pub(super) fn quadratic_vertex(&self, laplacian: LaplacianMesh) -> Box<dyn Energy> {
+        let (first, frames) = (self.part.first_vertex, &self.part.frames);
+        Box::new(QuadraticVertex::new(
+            &self.rest,
+            first,
+            self.layout,
+            frames,
+            &self.rigidity,
+            laplacian,
+        ))
+    }
+
+    pub(super) fn mid_edge_average(&self) -> Box<dyn Energy> {
+        let num_faces = self.part.mesh.num_faces();
+        let (stencils, frames) = (self.part.stencils.clone(), self.part.frames.clone());
+        let flat = vec![Vector3::zeros(); num_faces];
+        let section = self.part.section.clone();
+        let faces = FaceBending::<MidEdgeAverage<_>>::new(stencils, frames, flat, section);
+        let mut faces = Assembled::new(faces, self.layout);
+        if self.curved {
+            let mut q = vec![0.0; self.layout.num_dofs()];
+            write_points(&mut q, self.part.first_vertex, &self.rest.positions);
+            let form = |face| faces.local().second_form(face, &faces.gather(face, &q));
+            let forms = (0..num_faces).map(form).collect();
+            faces.local_mut().set_rest_forms(forms);
+        }
+        Box::new(faces)
+    }
+}
