@@ -47,13 +47,13 @@ impl BendingModel {
                 name: "dcs",
                 what: "Discrete Cosserat shell: directors on edges, sine profile; converges, sharp folds lose their stiffness",
                 unknowns: ExtraUnknowns::EdgeAngles,
-                source: "better-bending-2026, Eq. 30",
+                source: "better-bending-2026, Eq. 31, after weischedel-2012",
             },
             Self::Dso => BendingModelInfo {
                 name: "dso",
                 what: "Discrete shape operator: directors on edges, profile the angle itself; converges",
                 unknowns: ExtraUnknowns::EdgeAngles,
-                source: "better-bending-2026, Eq. 31",
+                source: "better-bending-2026, Eq. 34, after grinspun-2006",
             },
             Self::Dkt => BendingModelInfo {
                 name: "dkt",

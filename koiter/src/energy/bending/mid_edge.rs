@@ -8,7 +8,7 @@
 //! Ā rest area [m²], W energy of bending per unit area of the [`Section`] [J/m²], D rest edges ([`RestFrame`]), b̄ rest second
 //! fundamental form in the same frame [1/m], a_c altitude over edge c [m], θ_c hinge angle, α_c edge angle, ε_c sign of
 //! the edge in the face, g the profile: sin (DCS), identity (DSO), tan (BAC). Boundary edges have θ = 0 and a free α.
-//! Reference: "Better Bending" (2026), Eqs. (30), (31), (48); `2 a = 4 A / ℓ` there.
+//! Reference: "Better Bending" (2026), Eqs. (30), (31), (34), (48); `2 a = 4 A / ℓ` there.
 //!
 //! The unknowns are the corners, the opposite vertices of the three neighbours, and the three edge angles. The Hessian
 //! is `Jᵀ Q J + Σ σ_c ∇²q_c` with J = ∂q, Q the section's tangent and σ_c = ∂E/∂q_c; with the functionals of the two
