@@ -1,6 +1,8 @@
 //! From one state to the next.
 
 mod implicit_euler;
+mod linear;
+mod linear_static;
 mod offset_surface;
 mod quasi_static;
 mod report;
@@ -8,6 +10,8 @@ mod rest_directors;
 mod system;
 
 pub use implicit_euler::ImplicitEuler;
+pub use linear::{BucklingMode, LinearError, VibrationMode};
+pub use linear_static::LinearStatic;
 pub use offset_surface::OffsetSurfaces;
 pub use quasi_static::QuasiStatic;
 pub use report::{StepError, StepReport};

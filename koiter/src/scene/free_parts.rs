@@ -32,7 +32,7 @@ impl fmt::Display for FreePart {
 impl Model {
     /// The parts of shells that are free to move, if the scene is static; contact may hold them all the same.
     pub fn free_parts(&self) -> Vec<FreePart> {
-        if self.integrator != IntegratorKind::QuasiStatic {
+        if self.integrator == IntegratorKind::ImplicitEuler {
             return Vec::new();
         }
         (0..self.shells.len())

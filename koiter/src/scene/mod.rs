@@ -14,6 +14,7 @@ mod fingerprint;
 mod free_parts;
 mod loads;
 pub mod model;
+mod modes;
 mod position_bending;
 pub mod schedule;
 mod simulation;

@@ -278,6 +278,8 @@ pub enum IntegratorKind {
     ImplicitEuler,
     /// A sequence of static equilibria along the schedules; one step is one static solve.
     QuasiStatic,
+    /// Small displacements: each step is the response of the structure as it is at the start of the step.
+    LinearStatic,
 }
 
 /// Everything a [`super::Simulation`] is made of; by default nothing, without gravity.

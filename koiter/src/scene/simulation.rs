@@ -9,8 +9,8 @@ use crate::Vec3;
 use crate::assembly::{Assembled, Dof, Energy};
 use crate::energy::bending::ExtraUnknowns;
 use crate::integrate::{
-    ImplicitEuler, Integrator, Prescribed, QuasiStatic, ShellPart, State, StepError, StepReport,
-    System,
+    ImplicitEuler, Integrator, LinearStatic, Prescribed, QuasiStatic, ShellPart, State, StepError,
+    StepReport, System,
 };
 
 /// A model with its state, advanced step by step.
@@ -79,6 +79,7 @@ impl Simulation {
             IntegratorKind::QuasiStatic => Box::new(QuasiStatic {
                 displacement_tolerance: model.solver.displacement_tolerance,
             }),
+            IntegratorKind::LinearStatic => Box::new(LinearStatic),
         };
         let parts = tessellate(&model);
         let state = State {
@@ -150,7 +151,7 @@ impl Simulation {
             .advance(&self.model, time, self.system.clamps.local_mut());
     }
 
-    fn prescribed_at(&self, time: f64) -> Prescribed {
+    pub(super) fn prescribed_at(&self, time: f64) -> Prescribed {
         let mut is_fixed = vec![false; self.system.layout.num_solved_dofs()];
         let mut target = self.state.q.clone();
         for constraint in self.model.constraints.iter().filter(|c| time <= c.until) {

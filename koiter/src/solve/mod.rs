@@ -1,6 +1,7 @@
 //! Minimising a sum of energies: sparse factorisation, Newton's method, line search. Knows no shells and no contact.
 
 mod cholesky;
+mod eigen;
 mod line_search;
 mod multifrontal;
 mod newton;
@@ -11,6 +12,7 @@ mod supernodal;
 mod workspace;
 
 pub use cholesky::{LinearSolver, NotPositiveDefinite, SparseCholesky};
+pub use eigen::{EigenNotConverged, EigenPair, largest_eigenpairs};
 pub use multifrontal::Multifrontal;
 pub use newton::{
     HessianChoice, NewtonOptions, NewtonReport, Problem, SolveError, minimize, minimize_stably,

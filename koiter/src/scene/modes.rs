@@ -1,0 +1,37 @@
+//! How a simulated structure vibrates and buckles.
+
+use super::simulation::Simulation;
+use crate::integrate::{BucklingMode, LinearError, VibrationMode};
+
+impl Simulation {
+    /// The `count` lowest free vibrations about the present state, increasing; motions without resistance come first.
+    ///
+    /// About an equilibrium under load, a negative ω² means that it is not stable. Contact is left out.
+    ///
+    /// # Errors
+    /// See [`LinearError`].
+    pub fn vibration_modes(&mut self, count: usize) -> Result<Vec<VibrationMode>, LinearError> {
+        let prescribed = self.prescribed_at(self.state.time);
+        let fixed = &prescribed.is_fixed;
+        self.system.vibration_modes(&self.state.q, fixed, count)
+    }
+
+    /// The `count` lowest factors by which the loads and gravity of a `time` [s] buckle the structure, increasing; fewer if
+    /// there are no more. The structure is as stiff as in the present state, which should be one at rest, and responds
+    /// linearly up to buckling. Contact is left out.
+    ///
+    /// # Errors
+    /// See [`LinearError`].
+    pub fn buckling_modes(
+        &mut self,
+        time: f64,
+        count: usize,
+    ) -> Result<Vec<BucklingMode>, LinearError> {
+        self.apply_schedules(time);
+        let prescribed = self.prescribed_at(self.state.time);
+        let fixed = &prescribed.is_fixed;
+        let modes = self.system.buckling_modes(&self.state.q, fixed, count);
+        self.apply_schedules(self.state.time);
+        modes
+    }
+}
