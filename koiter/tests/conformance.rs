@@ -6,10 +6,10 @@ use koiter::energy::Membrane;
 use koiter::energy::bending::{
     AngleProfile, ClampedEdge, CorotationalEdge, CorotationalFace, DirectorClamp,
     DiscreteKirchhoff, DiscreteShells, FaceBending, Identity, LaplacianMesh, MidEdgeAverage,
-    MidEdgeBending, QuadraticHinge, QuadraticVertex, Sine, Tangent, bending_stencils,
-    vertex_normals,
+    MidEdgeBending, QuadraticHinge, QuadraticVertex, Sine, SymmetryEdge, SymmetryEdges, Tangent,
+    bending_stencils, vertex_normals,
 };
-use koiter::energy::loads::{EdgeMoment, Pressure, TurnedEdge};
+use koiter::energy::loads::{DirectorMoment, EdgeMoment, Pressure, TurnedDirectors, TurnedEdge};
 use koiter::material::{Homogeneous, StVenantKirchhoff};
 use koiter::mesh::{Surface, TriMesh};
 use koiter::rest::{RestFrame, rest_frames};
@@ -400,6 +400,57 @@ fn the_edge_moment_conforms() {
         &Claims::default(),
     )
     .unwrap();
+}
+
+#[test]
+fn the_director_moment_conforms() {
+    let mut s = patch(1.0);
+    let directors = s.layout.push_nodes(s.rest.mesh.num_vertices(), 3, true);
+    for i in 0..3 * s.rest.mesh.num_vertices() {
+        let tilt = 0.4 * ((i * 5 + 2) as f64).sin();
+        s.q.push(if i % 3 == 2 { 1.2 + tilt } else { tilt });
+    }
+    let edges = s.rest.mesh.edges().iter().enumerate();
+    let edges = edges.map(|(i, vertices)| TurnedDirectors {
+        ends: vertices.map(|v| Dof(3 * v)),
+        directors: vertices.map(|v| Dof(directors.0 + 3 * v)),
+        moment: 0.8 + 0.1 * i as f64,
+        references: [Vec3::new(0.3, 0.5, 1.0), Vec3::new(-0.2, 0.1, 1.0)],
+        turned: 0.3,
+        vertices: *vertices,
+    });
+    let moment = DirectorMoment {
+        edges: edges.collect(),
+        factor: 1.3,
+    };
+    let formula = |e: &DirectorMoment, i: usize, q: &_| e.formula(i, q);
+    check(moment, &s.layout, &s.q, formula, &Claims::default()).unwrap();
+}
+
+#[test]
+fn edges_on_planes_of_symmetry_conform() {
+    let s = patch(1.0);
+    let mut edges = Vec::new();
+    for (face, stencil) in bending_stencils(&s.rest.mesh, Dof(0), s.edges)
+        .iter()
+        .enumerate()
+    {
+        for c in (0..3).filter(|c| stencil.across[*c].is_none()) {
+            let ends = [(c + 1) % 3, (c + 2) % 3];
+            let corners = s.rest.mesh.faces()[face];
+            edges.push(SymmetryEdge {
+                corners: [ends[0], ends[1], c].map(|i| stencil.corners[i]),
+                angle: stencil.angles[c],
+                sign: stencil.signs[c],
+                normal: Vec3::new(0.6, -0.8, 0.0),
+                stiffness: 0.8,
+                vertices: ends.map(|i| corners[i]),
+            });
+        }
+    }
+    let formula = |e: &SymmetryEdges, i: usize, q: &_| e.formula(i, q);
+    let symmetry = SymmetryEdges { edges };
+    check(symmetry, &s.layout, &s.q, formula, &Claims::default()).unwrap();
 }
 
 /// A membrane with one wrong entry in its gradient or in its Hessian.

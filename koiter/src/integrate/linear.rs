@@ -194,6 +194,7 @@ impl System {
             energies.push(energy.as_mut());
         }
         energies.push(&mut self.clamps);
+        energies.push(&mut self.symmetry);
         let elastic = energies.len();
         energies.push(&mut self.gravity);
         energies.push(&mut self.loads);

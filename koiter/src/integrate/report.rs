@@ -33,6 +33,46 @@ pub struct StepReport {
     pub diagnosis: Option<String>,
 }
 
+impl StepReport {
+    /// Adds the work of an attempt, whatever came of it.
+    pub fn add_effort(&mut self, attempt: &Self) {
+        self.newton_iterations += attempt.newton_iterations;
+        self.line_search_steps += attempt.line_search_steps;
+        for (part, seconds) in &attempt.seconds {
+            match self.seconds.iter_mut().find(|(name, _)| name == part) {
+                Some((_, total)) => *total += seconds,
+                None => self.seconds.push((part, *seconds)),
+            }
+        }
+    }
+
+    /// Appends the next part of a step: efforts add up, the state is that at its end.
+    pub fn add_part(&mut self, part: Self) {
+        self.add_effort(&part);
+        let slid = |energies: &[(&'static str, f64)]| {
+            let friction = energies.iter().find(|(name, _)| *name == "friction");
+            friction.map_or(0.0, |(_, taken)| *taken)
+        };
+        let slid_before = slid(&self.energies);
+        let mut energies = part.energies;
+        for (name, value) in &mut energies {
+            if *name == "friction" {
+                *value += slid_before;
+            }
+        }
+        *self = Self {
+            newton_iterations: self.newton_iterations,
+            line_search_steps: self.line_search_steps,
+            seconds: std::mem::take(&mut self.seconds),
+            converged: self.converged && part.converged,
+            energies,
+            diagnosis: self.diagnosis.take().or(part.diagnosis),
+            intersections: self.intersections + part.intersections,
+            ..part
+        };
+    }
+}
+
 /// Why a step could not be taken.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]

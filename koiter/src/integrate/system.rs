@@ -11,8 +11,8 @@ use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::contact::{Contact, Friction};
 use crate::energy::bending::{
-    BendingStencil, DirectorClamp, DirectorShape, ExtraUnknowns, curvatures, directors,
-    kirchhoff_forms,
+    BendingStencil, DirectorClamp, DirectorShape, ExtraUnknowns, SymmetryEdges, curvatures,
+    directors, kirchhoff_forms,
 };
 use crate::energy::loads::Loads;
 use crate::energy::{Gravity, Inertia};
@@ -145,6 +145,8 @@ pub struct System {
     pub elastic: Vec<Box<dyn Energy>>,
     /// Clamped edges.
     pub clamps: Assembled<DirectorClamp, 7, 3>,
+    /// Edges on planes of symmetry.
+    pub symmetry: Assembled<SymmetryEdges, 10, 4>,
     /// Gravity.
     pub gravity: Gravity,
     /// What pushes and turns from outside.
@@ -201,8 +203,10 @@ impl System {
             energies.push(energy.as_mut());
         }
         energies.push(&mut self.clamps);
+        energies.push(&mut self.symmetry);
         energies.push(&mut self.gravity);
         energies.push(&mut self.loads);
+        let (is_static, has_contact) = (inertia.is_none(), self.contact.is_some());
         // Inertia holds a body on a saddle for the moment that a step takes; at rest it would not stay there.
         let minimize = if inertia.is_some() {
             minimize
@@ -223,10 +227,15 @@ impl System {
             is_fixed: &prescribed.is_fixed,
             target: &prescribed.target,
         };
+        // Far from contact an equilibrium is near the last one, where the energy is convex.
+        let hessian = match is_static && !has_contact {
+            true => HessianChoice::ExactWhereConvex,
+            false => HessianChoice::Projected,
+        };
         let options = NewtonOptions {
             tolerance,
             max_iterations: self.max_iterations,
-            hessian: HessianChoice::Projected,
+            hessian,
         };
         let newton = minimize(&mut problem, &options, &mut self.workspace, q)?;
         let friction = self.contact.is_some().then(|| friction.value(q));
@@ -246,6 +255,9 @@ impl System {
         }
         if !self.clamps.local().edges.is_empty() {
             add(self.clamps.name(), self.clamps.value(&state.q));
+        }
+        if !self.symmetry.local().edges.is_empty() {
+            add(self.symmetry.name(), self.symmetry.value(&state.q));
         }
         add("gravity", self.gravity.value(&state.q));
         if !self.loads.loads.is_empty() {

@@ -4,6 +4,7 @@ use super::clamps::Clamps;
 use super::elastic::{Elastic, rest_surface};
 use super::loads::loads;
 use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
+use super::symmetry::symmetry_edges;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout};
 use crate::contact::{CollisionBody, CollisionMesh, CollisionPlane, Contact, StartError};
@@ -45,11 +46,20 @@ pub enum BuildError {
     },
     /// A moment on directors that are not there.
     #[error(
-        "load '{load}': a moment turns directors, which the bending model of shell '{shell}' has not; use bac, dcs or dso"
+        "load '{load}': a moment turns directors, which the bending model of shell '{shell}' has not; use bac, dcs, dso or dkt"
     )]
     MomentWithoutDirectors {
         /// Name of the load.
         load: String,
+        /// Name of the shell.
+        shell: String,
+    },
+    /// A plane of symmetry that a model cannot feel.
+    #[error(
+        "shell '{shell}': at a plane of symmetry a bending model without directors bends freely, as at a hinge; use bac, dcs, \
+         dso or dkt, or simulate the whole shell"
+    )]
+    SymmetryWithoutDirectors {
         /// Name of the shell.
         shell: String,
     },
@@ -88,6 +98,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         parts,
     } = Elastic::new(model, &unknowns, &mut q)?;
     let (clamps, clamped_edges) = Clamps::new(model, &parts, &q);
+    let symmetry = symmetry_edges(model, &parts, &q)?;
     let loads = loads(model, &parts, &unknowns.layout, &q)?;
     let gravity = Gravity {
         masses: vertex_masses(&parts, &masses),
@@ -107,6 +118,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     }
     let system = System {
         clamps: Assembled::new(clamped_edges, &layout),
+        symmetry: Assembled::new(symmetry, &layout),
         layout,
         elastic: energies,
         gravity,

@@ -1,6 +1,7 @@
 //! From what was typed to a model that can be simulated: meshes read, selections resolved, plausibility checked.
 
 mod loads;
+mod symmetry;
 
 use super::document::Document;
 use super::error::{SceneError, SceneErrorKind as Kind, Warning};
@@ -121,11 +122,13 @@ impl Builder<'_> {
             .collect::<Result<_, _>>()?;
         let constraints = self.constraints(&shells)?;
         let loads = self.loads(&shells)?;
+        let symmetry_planes = self.symmetry_planes(&shells)?;
         let (contact, solver) = (&spec.contact, SolverOptions::default());
         Ok(Model {
             shells,
             obstacles,
             constraints,
+            symmetry_planes,
             loads,
             gravity: Vec3::from(spec.gravity),
             gravity_scale: spec.gravity_scale.clone(),
@@ -145,6 +148,7 @@ impl Builder<'_> {
                     .displacement_tolerance
                     .unwrap_or(solver.displacement_tolerance),
                 max_iterations: spec.solver.max_iterations.unwrap_or(solver.max_iterations),
+                smallest_step: spec.solver.smallest_step.unwrap_or(solver.smallest_step),
             },
             integrator: spec.integrator,
         })

@@ -1,6 +1,6 @@
 //! Clamped edges: from constraints to prescribed directors, and along their motions.
 
-use super::model::{Constraint, Model};
+use super::model::{Constraint, Model, Shell};
 use super::vertex_directors::HeldDirector;
 use crate::Vec3;
 use crate::assembly::Dof;
@@ -51,9 +51,6 @@ impl Clamps {
                 }
                 ExtraUnknowns::None | ExtraUnknowns::EdgePoints => continue,
             }
-            let nu = shell.poissons_ratio;
-            let rigidity =
-                shell.youngs_modulus * shell.thickness.powi(3) / (12.0 * (1.0 - nu * nu));
             for (edge, face, corner) in held_edges(constraint, part) {
                 let vertices = part.mesh.faces()[face];
                 let ends = [vertices[(corner + 1) % 3], vertices[(corner + 2) % 3]];
@@ -62,7 +59,7 @@ impl Clamps {
                 let start_director = part.directors(face, q)[corner].normalize();
                 let apex = part.position(vertices[corner] as usize, q) - start_ends[0];
                 let altitude = along.cross(&apex).norm() / along.norm();
-                let stiffness = STIFFNESS * rigidity * along.norm() / altitude;
+                let stiffness = clamp_stiffness(shell, STIFFNESS, along.norm(), altitude);
                 let stencil = &part.stencils[face];
                 sources.push(Source {
                     constraint: index,
@@ -113,6 +110,13 @@ impl Clamps {
             };
         }
     }
+}
+
+/// `factor` times the stiffness [J/rad²] with which a face of this altitude [m] resists a turning of its edge of this length [m].
+pub(super) fn clamp_stiffness(shell: &Shell, factor: f64, length: f64, altitude: f64) -> f64 {
+    let nu = shell.poissons_ratio;
+    let rigidity = shell.youngs_modulus * shell.thickness.powi(3) / (12.0 * (1.0 - nu * nu));
+    factor * rigidity * length / altitude
 }
 
 /// Edges with both ends held, each with a face that sees it and its corner there.

@@ -52,6 +52,11 @@ impl Model {
                 }
             }
         }
+        for plane in self.symmetry_planes.iter().filter(|p| p.shell == shell) {
+            for vertex in &plane.vertices {
+                axes[part_of_vertex[vertex.0 as usize] as usize][plane.axis] = false;
+            }
+        }
         let first = |part: usize| part_of_vertex.iter().position(|&p| p as usize == part);
         (0..count)
             .filter(|&part| axes[part].contains(&true))

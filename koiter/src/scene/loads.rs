@@ -8,7 +8,10 @@ use super::model::{self, LoadKind, Model};
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout};
 use crate::energy::bending::ExtraUnknowns;
-use crate::energy::loads::{DeadLoad, EdgeMoment, Load, Loads, Pressure, TurnedEdge, VertexForce};
+use crate::energy::loads::{
+    DeadLoad, DirectorMoment, EdgeMoment, Load, Loads, Pressure, TurnedDirectors, TurnedEdge,
+    VertexForce,
+};
 use crate::integrate::ShellPart;
 use crate::mesh::{EdgeId, Surface, TriMesh, VertexId};
 
@@ -62,19 +65,30 @@ fn one(
             Load::Pressure(Assembled::new(pressure, layout))
         }
         LoadKind::Moment { edges, moment } => {
-            if part.extra != ExtraUnknowns::EdgeAngles {
-                return Err(BuildError::MomentWithoutDirectors {
-                    load: load.name.clone(),
-                    shell: shell.name.clone(),
-                });
-            }
             let rest = rest_surface(shell);
-            let turned = |edge: &EdgeId| {
+            let moments = edges.iter().map(|edge| {
                 let length = rest.edge_length(edge.0 as usize);
-                turned_edge(part, *edge, moment * length)
-            };
-            let edges = edges.iter().map(turned).collect();
-            Load::Moment(Assembled::new(EdgeMoment { edges, factor: 1.0 }, layout))
+                (*edge, moment * length)
+            });
+            match part.extra {
+                ExtraUnknowns::EdgeAngles => {
+                    let edges = moments.map(|(edge, moment)| turned_edge(part, edge, moment));
+                    let edges = edges.collect();
+                    Load::Moment(Assembled::new(EdgeMoment { edges, factor: 1.0 }, layout))
+                }
+                ExtraUnknowns::VertexDirectors => {
+                    let edges = moments.map(|(edge, moment)| turned_directors(part, edge, moment));
+                    let edges = edges.collect();
+                    let moment = DirectorMoment { edges, factor: 1.0 };
+                    Load::DirectorMoment(Assembled::new(moment, layout))
+                }
+                ExtraUnknowns::None | ExtraUnknowns::EdgePoints => {
+                    return Err(BuildError::MomentWithoutDirectors {
+                        load: load.name.clone(),
+                        shell: shell.name.clone(),
+                    });
+                }
+            }
         }
         dead => {
             let rest = rest_surface(shell);
@@ -141,6 +155,22 @@ fn turned_edge(part: &ShellPart, edge: EdgeId, moment: f64) -> TurnedEdge {
         moment,
         // Both are set when turning is first measured.
         reference: Vec3::zeros(),
+        turned: 0.0,
+        vertices: part.mesh.edges()[edge.0 as usize],
+    }
+}
+
+/// The edge with the directors of its ends, which are seen like in [`turned_edge`].
+fn turned_directors(part: &ShellPart, edge: EdgeId, moment: f64) -> TurnedDirectors {
+    let (face, corner) = side(&part.mesh, edge);
+    let corners = part.mesh.faces()[face];
+    let vertices = [corners[(corner + 1) % 3], corners[(corner + 2) % 3]];
+    TurnedDirectors {
+        ends: vertices.map(|v| Dof(part.first_vertex.0 + 3 * v)),
+        directors: vertices.map(|v| Dof(part.first_extra.0 + 3 * v)),
+        moment,
+        // Both are set when turning is first measured.
+        references: [Vec3::zeros(); 2],
         turned: 0.0,
         vertices: part.mesh.edges()[edge.0 as usize],
     }

@@ -19,6 +19,8 @@ mod position_bending;
 pub mod schedule;
 mod simulation;
 mod snapshot;
+mod step_control;
+mod symmetry;
 mod vertex_directors;
 
 #[cfg(feature = "serde")]

@@ -164,6 +164,18 @@ pub struct Constraint {
     pub until: f64,
 }
 
+/// A plane across a coordinate axis behind which a shell goes on as its mirror image: vertices on it stay on it, and
+/// directors there stay in it. Only for bending models with directors.
+#[derive(Clone, Debug)]
+pub struct SymmetryPlane {
+    /// Index of the shell.
+    pub shell: usize,
+    /// The plane is normal to x, y or z: 0, 1 or 2.
+    pub axis: usize,
+    /// The vertices on the plane.
+    pub vertices: Vec<VertexId>,
+}
+
 /// What pushes or turns a shell from outside.
 #[derive(Clone, Debug)]
 pub struct Load {
@@ -252,6 +264,8 @@ pub struct SolverOptions {
     pub displacement_tolerance: f64,
     /// Largest number of Newton iterations a step.
     pub max_iterations: usize,
+    /// Statics: a step that does not converge is cut in half until its parts are this share of it; 1: never.
+    pub smallest_step: f64,
 }
 
 impl Default for SolverOptions {
@@ -260,6 +274,7 @@ impl Default for SolverOptions {
             velocity_tolerance: 1e-3,
             displacement_tolerance: 1e-7,
             max_iterations: 200,
+            smallest_step: 1.0 / 64.0,
         }
     }
 }
@@ -291,6 +306,8 @@ pub struct Model {
     pub obstacles: Vec<Obstacle>,
     /// Prescribed vertices.
     pub constraints: Vec<Constraint>,
+    /// Planes of symmetry.
+    pub symmetry_planes: Vec<SymmetryPlane>,
     /// Loads.
     pub loads: Vec<Load>,
     /// Gravitational acceleration [m/s²].

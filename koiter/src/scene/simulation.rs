@@ -5,6 +5,7 @@ use super::clamps::Clamps;
 use super::display::{PartTopology, tessellate};
 use super::loads::set_factors;
 use super::model::{IntegratorKind, Model};
+use super::symmetry::held_by;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, Energy};
 use crate::energy::bending::ExtraUnknowns;
@@ -24,6 +25,8 @@ pub struct Simulation {
     parts: Vec<PartTopology>,
     /// Mass times acceleration of the last step [N]; zero in statics.
     pub(super) momentum_rates: Vec<f64>,
+    /// The share of a static step that is tried first.
+    pub(super) share: f64,
 }
 
 /// Sizes of a simulation.
@@ -98,6 +101,7 @@ impl Simulation {
             clamps,
             parts,
             momentum_rates,
+            share: 1.0,
         })
     }
 
@@ -114,7 +118,16 @@ impl Simulation {
     }
 
     fn step_in_pool(&mut self, dt: f64) -> Result<StepReport, StepError> {
-        let time = self.state.time + dt;
+        match self.model.integrator {
+            IntegratorKind::QuasiStatic => self.step_in_parts(dt),
+            IntegratorKind::ImplicitEuler | IntegratorKind::LinearStatic => {
+                self.step_to(self.state.time + dt, dt)
+            }
+        }
+    }
+
+    /// One step of the integrator, to the time `time` [s], `dt` [s] from now.
+    pub(super) fn step_to(&mut self, time: f64, dt: f64) -> Result<StepReport, StepError> {
         self.apply_schedules(time);
         let prescribed = self.prescribed_at(time);
         let before = self.state.velocities.clone();
@@ -174,6 +187,10 @@ impl Simulation {
                 is_fixed[range.clone()].fill(true);
                 target[range].copy_from_slice(held.at(constraint, time).as_slice());
             }
+        }
+        for (dof, value) in held_by(&self.model, &self.system.space.shells) {
+            is_fixed[dof] = true;
+            target[dof] = value;
         }
         for (obstacle, (first, points)) in self.model.obstacles.iter().zip(&self.obstacles) {
             for (i, x) in points.iter().enumerate() {
@@ -246,6 +263,7 @@ impl Simulation {
             .gravity
             .add_gradient(&self.state.q, &mut gradient);
         (self.system.loads).add_gradient(&self.state.q, &mut gradient);
+        (self.system.symmetry).add_gradient(&self.state.q, &mut gradient);
         if let Some(contact) = &self.system.contact {
             contact.add_gradient(&self.state.q, &mut gradient);
         }

@@ -17,6 +17,8 @@ pub struct Snapshot {
     pub kappa: Option<f64>,
     /// How far the directors of edges under moments have turned [rad], in the order of loads and edges.
     pub turned: Vec<f64>,
+    /// The share of a static step that is tried first.
+    pub share: f64,
     /// What the linear solver keeps between steps.
     pub solver: WorkspaceHistory,
 }
@@ -37,6 +39,7 @@ impl Simulation {
             momentum_rates: self.momentum_rates.clone(),
             kappa: self.system.contact.as_ref().map(|contact| contact.kappa()),
             turned: self.system.loads.turned(),
+            share: self.share,
             solver: self.system.workspace.history(),
         }
     }
@@ -52,6 +55,7 @@ impl Simulation {
             LinearWorkspace::with_history(&snapshot.solver, &self.system.layout).map_err(refuse)?;
         self.state = snapshot.state.clone();
         self.momentum_rates = snapshot.momentum_rates.clone();
+        self.share = snapshot.share;
         (self.system.loads).restore_turned(&snapshot.turned, &self.state.q);
         self.apply_schedules(self.state.time);
         if let (Some(contact), Some(kappa)) = (&mut self.system.contact, snapshot.kappa) {
@@ -87,6 +91,9 @@ impl Simulation {
         }
         if !(state.time.is_finite() && state.time >= 0.0) {
             return Err(format!("its time is {} s", state.time));
+        }
+        if !(snapshot.share > 0.0 && snapshot.share <= 1.0) {
+            return Err(format!("its share of a step is {}", snapshot.share));
         }
         match (&self.system.contact, snapshot.kappa) {
             (None, None) => Ok(()),

@@ -21,6 +21,7 @@
 mod check;
 mod load;
 mod shape;
+mod symmetry;
 
 pub use check::MAX_STEPS;
 pub use load::{EdgeChoice, LoadSpec};
@@ -32,6 +33,8 @@ pub use shape::{
     CapSpec, ConeSpec, CylinderSpec, Diagonals, DiscSpec, GridSpec, IcosphereSpec, IrregularSpec,
     TorusSpec, VeeSpec,
 };
+
+pub use symmetry::SymmetrySpec;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -72,6 +75,9 @@ pub struct SceneSpec {
     /// Prescribed vertices.
     #[serde(default)]
     pub constraint: Vec<ConstraintSpec>,
+    /// Planes of symmetry.
+    #[serde(default)]
+    pub symmetry: Vec<SymmetrySpec>,
     /// Loads.
     #[serde(default)]
     pub load: Vec<LoadSpec>,
@@ -333,6 +339,9 @@ pub struct SolverSpec {
     /// Largest number of Newton iterations a step.
     #[serde(default)]
     pub max_iterations: Option<usize>,
+    /// Statics: a step that does not converge is cut in half until its parts are this share of it; 1: never.
+    #[serde(default)]
+    pub smallest_step: Option<f64>,
 }
 
 /// `[[probe]]`.

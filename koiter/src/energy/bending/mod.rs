@@ -16,6 +16,7 @@ mod profile;
 mod quadratic_form;
 mod quadratic_hinge;
 mod quadratic_vertex;
+mod symmetry_edge;
 
 pub use corotational_edge::CorotationalEdge;
 pub use corotational_face::CorotationalFace;
@@ -33,3 +34,4 @@ pub use mid_edge_average::MidEdgeAverage;
 pub use profile::{AngleProfile, Identity, Sine, Tangent};
 pub use quadratic_hinge::QuadraticHinge;
 pub use quadratic_vertex::{LaplacianMesh, QuadraticVertex};
+pub use symmetry_edge::{SymmetryEdge, SymmetryEdges};

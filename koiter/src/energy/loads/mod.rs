@@ -4,10 +4,12 @@
 //! under load is a minimum like any other. Magnitudes are given at a factor of 1, which schedules change over time.
 
 mod dead_load;
+mod director_moment;
 mod edge_moment;
 mod pressure;
 
 pub use dead_load::{DeadLoad, VertexForce};
+pub use director_moment::{DirectorMoment, TurnedDirectors};
 pub use edge_moment::{EdgeMoment, TurnedEdge};
 pub use pressure::Pressure;
 
@@ -21,8 +23,10 @@ pub enum Load {
     Dead(DeadLoad),
     /// Pressure along the normals.
     Pressure(Assembled<Pressure, 9, 3>),
-    /// Moments about edges.
+    /// Moments on the directors of edges.
     Moment(Assembled<EdgeMoment, 13, 5>),
+    /// Moments on the directors at the ends of edges.
+    DirectorMoment(Assembled<DirectorMoment, 12, 4>),
 }
 
 impl Load {
@@ -32,6 +36,7 @@ impl Load {
             Self::Dead(load) => load.factor = factor,
             Self::Pressure(load) => load.local_mut().factor = factor,
             Self::Moment(load) => load.local_mut().factor = factor,
+            Self::DirectorMoment(load) => load.local_mut().factor = factor,
         }
     }
 
@@ -40,6 +45,33 @@ impl Load {
             Self::Dead(load) => load,
             Self::Pressure(load) => load,
             Self::Moment(load) => load,
+            Self::DirectorMoment(load) => load,
+        }
+    }
+}
+
+impl Load {
+    fn turned(&self) -> Vec<f64> {
+        match self {
+            Self::Moment(load) => load.local().edges.iter().map(|edge| edge.turned).collect(),
+            Self::DirectorMoment(load) => {
+                load.local().edges.iter().map(|edge| edge.turned).collect()
+            }
+            Self::Dead(_) | Self::Pressure(_) => Vec::new(),
+        }
+    }
+
+    fn turned_mut(&mut self) -> Vec<&mut f64> {
+        match self {
+            Self::Moment(load) => {
+                let edges = load.local_mut().edges.iter_mut();
+                edges.map(|edge| &mut edge.turned).collect()
+            }
+            Self::DirectorMoment(load) => {
+                let edges = load.local_mut().edges.iter_mut();
+                edges.map(|edge| &mut edge.turned).collect()
+            }
+            Self::Dead(_) | Self::Pressure(_) => Vec::new(),
         }
     }
 }
@@ -52,31 +84,21 @@ pub struct Loads {
 }
 
 impl Loads {
-    fn moments(&self) -> impl Iterator<Item = &EdgeMoment> {
-        self.loads.iter().filter_map(|load| match load {
-            Load::Moment(load) => Some(load.local()),
-            _ => None,
-        })
-    }
-
-    fn moments_mut(&mut self) -> impl Iterator<Item = &mut EdgeMoment> {
-        self.loads.iter_mut().filter_map(|load| match load {
-            Load::Moment(load) => Some(load.local_mut()),
-            _ => None,
-        })
-    }
-
     /// Measures the turning of directors from `q` on: the angles of one step stay small, their sum may pass any number
     /// of turns.
     pub fn rebase(&mut self, q: &[f64]) {
-        self.moments_mut().for_each(|moment| moment.rebase(q));
+        for load in &mut self.loads {
+            match load {
+                Load::Moment(load) => load.local_mut().rebase(q),
+                Load::DirectorMoment(load) => load.local_mut().rebase(q),
+                Load::Dead(_) | Load::Pressure(_) => {}
+            }
+        }
     }
 
     /// How far the directors of the edges under moments had turned [rad] at the last [`Self::rebase`].
     pub fn turned(&self) -> Vec<f64> {
-        self.moments()
-            .flat_map(|moment| moment.edges.iter().map(|edge| edge.turned))
-            .collect()
+        self.loads.iter().flat_map(Load::turned).collect()
     }
 
     /// Goes on from angles that [`Self::turned`] gave after a [`Self::rebase`] at `q`.
@@ -85,9 +107,9 @@ impl Loads {
     /// If there are fewer than edges.
     pub fn restore_turned(&mut self, turned: &[f64], q: &[f64]) {
         self.rebase(q);
-        let edges = self.moments_mut().flat_map(|moment| &mut moment.edges);
-        for (index, edge) in edges.enumerate() {
-            edge.turned = turned[index];
+        let angles = self.loads.iter_mut().flat_map(Load::turned_mut);
+        for (index, angle) in angles.enumerate() {
+            *angle = turned[index];
         }
     }
 }
@@ -131,6 +153,7 @@ impl Energy for Loads {
                 Load::Dead(_) => {}
                 Load::Pressure(load) => load.bind(pattern),
                 Load::Moment(load) => load.bind(pattern),
+                Load::DirectorMoment(load) => load.bind(pattern),
             }
         }
     }

@@ -5,7 +5,7 @@
 //! list of bodies: text name, u64 fingerprint of the mesh
 //! u64 step  f64 time  list of f64: q, its rates, momentum rates
 //! u8 1 with contact, else 0  f64 barrier stiffness
-//! list of f64: what the directors under moments have turned
+//! list of f64: what the directors under moments have turned  f64 share of a step
 //! list of u32 × 2: couplings by contacts  list of u32: elimination order  u64 factor entries when it was made
 //! u64 × 3 Newton iterations, steps not converged, intersections  f64 × 2 smallest gap, seconds
 //! list of parts of the run: text name, f64 seconds  list of f64: last values of the probes
@@ -139,6 +139,7 @@ impl Checkpoint {
         out.0.push(snapshot.kappa.is_some().into());
         out.f64(snapshot.kappa.unwrap_or(0.0));
         out.numbers(&snapshot.turned);
+        out.f64(snapshot.share);
         let WorkspaceHistory {
             changing_pairs,
             node_order,
@@ -212,6 +213,7 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
     let has_contact = reader.u8()?;
     let kappa = reader.f64()?;
     let turned = numbers(reader)?;
+    let share = reader.f64()?;
     let solver = WorkspaceHistory {
         changing_pairs: list(reader, 8, |reader| Some([reader.u32()?, reader.u32()?]))?,
         node_order: list(reader, 4, ByteReader::u32)?,
@@ -231,6 +233,7 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
         momentum_rates,
         kappa: (has_contact == 1).then_some(kappa),
         turned,
+        share,
         solver,
     };
     Some(Checkpoint {

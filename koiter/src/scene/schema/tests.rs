@@ -18,6 +18,10 @@ plane = {}
 name = "pin"
 shell = "sheet"
 select.all = true
+[[symmetry]]
+shell = "sheet"
+normal = "x"
+at = 0.5
 [[load]]
 name = "lift"
 shell = "sheet"

@@ -6,7 +6,7 @@ use std::collections::HashSet;
 
 use super::{
     ConstraintSpec, ENERGY_NAMES, FIELD_NAMES, MeshSpec, ObstacleSpec, ProbeQuantity, ProbeSpec,
-    RotationSpec, SceneSpec, SelectSpec, ShellSpec,
+    RotationSpec, SceneSpec, SelectSpec, ShellSpec, SymmetrySpec,
 };
 use crate::material::presets;
 use crate::scene::document::suggest;
@@ -73,6 +73,9 @@ pub(super) fn check(spec: &SceneSpec) -> Checked {
     }
     for (index, constraint) in spec.constraint.iter().enumerate() {
         check_constraint(&constraint.path(index), constraint, spec)?;
+    }
+    for (index, plane) in spec.symmetry.iter().enumerate() {
+        check_symmetry(&format!("symmetry.{index}"), plane, spec)?;
     }
     for load in &spec.load {
         loads::check_load(load, spec)?;
@@ -266,6 +269,24 @@ fn check_constraint(path: &str, constraint: &ConstraintSpec, spec: &SceneSpec) -
     check_motion(&at("motion"), &constraint.motion)
 }
 
+fn check_symmetry(path: &str, plane: &SymmetrySpec, spec: &SceneSpec) -> Checked {
+    check_shell_name(&format!("{path}.shell"), &plane.shell, spec)?;
+    let shell = spec.shell.iter().find(|shell| shell.name == plane.shell);
+    match shell.filter(|shell| !shell.bending.knows_symmetry()) {
+        None => Ok(()),
+        Some(shell) => {
+            let message = format!(
+                "at a plane of symmetry the bending model '{}' of shell '{}', which has no directors, bends freely, as at a hinge",
+                shell.bending.info().name,
+                shell.name
+            );
+            Err(error(Kind::Conflict, path, message).with_help(
+                "use bending = \"bac\", \"dcs\", \"dso\" or \"dkt\", or simulate the whole shell",
+            ))
+        }
+    }
+}
+
 fn check_shell_name(path: &str, name: &str, spec: &SceneSpec) -> Checked {
     if spec.shell.iter().any(|shell| shell.name == name) {
         return Ok(());
@@ -385,6 +406,11 @@ fn check_contact_and_solver(spec: &SceneSpec) -> Checked {
         solver.displacement_tolerance,
         "m",
     )?;
+    optional_positive("solver.smallest_step", solver.smallest_step, "")?;
+    if let Some(share) = solver.smallest_step.filter(|share| *share > 1.0) {
+        let message = format!("smallest_step is a share of a step, at most 1, but it is {share}");
+        return Err(error(Kind::OutOfRange, "solver.smallest_step", message));
+    }
     if solver.max_iterations == Some(0) {
         let message = "there must be at least 1 iteration".to_owned();
         return Err(error(Kind::OutOfRange, "solver.max_iterations", message));

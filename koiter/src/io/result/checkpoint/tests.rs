@@ -15,6 +15,7 @@ fn checkpoint() -> Checkpoint {
             momentum_rates: vec![1.5],
             kappa: Some(1e5),
             turned: vec![7.5],
+            share: 0.25,
             solver: WorkspaceHistory {
                 changing_pairs: vec![[0, 1], [0, 7]],
                 node_order: vec![2, 0, 1],

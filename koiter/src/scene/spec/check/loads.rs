@@ -62,7 +62,8 @@ pub(super) fn check_load(load: &LoadSpec, spec: &SceneSpec) -> Checked {
 fn check_directors(path: &str, load: &LoadSpec, spec: &SceneSpec) -> Checked {
     let shell = spec.shell.iter().find(|shell| shell.name == load.shell);
     let bending = shell.map(|shell| shell.bending.info());
-    match bending.filter(|info| info.unknowns != ExtraUnknowns::EdgeAngles) {
+    let with_directors = [ExtraUnknowns::EdgeAngles, ExtraUnknowns::VertexDirectors];
+    match bending.filter(|info| !with_directors.contains(&info.unknowns)) {
         None => Ok(()),
         Some(info) => {
             let message = format!(
@@ -70,7 +71,7 @@ fn check_directors(path: &str, load: &LoadSpec, spec: &SceneSpec) -> Checked {
                 info.name, load.shell
             );
             Err(error(Kind::Conflict, path, message)
-                .with_help("use bending = \"bac\", \"dcs\" or \"dso\""))
+                .with_help("use bending = \"bac\", \"dcs\", \"dso\" or \"dkt\""))
         }
     }
 }

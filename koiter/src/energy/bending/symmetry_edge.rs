@@ -1,0 +1,110 @@
+//! Holds the directors of edges on a plane of symmetry in that plane.
+//!
+//! ```text
+//! E = Σ ½ K ψ²,    ψ = β + ε α,    r = m × e
+//! ```
+//!
+//! The surface goes on behind the plane as its mirror image, so the director of an edge in the plane, which belongs to both
+//! halves, is in the plane too: across the edge e that is the direction r, with m the unit normal of the plane on the side
+//! where r is nearer to the director at the start. β [rad] turns r into the normal of the face about the edge, the edge
+//! angle α the normal into the director; ψ is the angle from r to the director. Unlike in [`super::DirectorClamp`] the ends
+//! of the edge move, within the plane.
+//!
+//! K [J/rad²] is a penalty; ψ is wrong by the bending moment over K.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::Vec3;
+use crate::assembly::{Dof, LocalEnergy, LocalHessian};
+use crate::geometry::{Jet, Real};
+
+/// A boundary edge on a plane of symmetry.
+#[derive(Clone, Copy, Debug)]
+pub struct SymmetryEdge {
+    /// Ends of the edge in its face's traversal, apex of the face.
+    pub corners: [Dof; 3],
+    /// The edge angle.
+    pub angle: Dof,
+    /// ε of the edge in the face.
+    pub sign: f64,
+    /// m.
+    pub normal: Vec3,
+    /// K [J/rad²].
+    pub stiffness: f64,
+    /// The edge by its vertices, for reports.
+    pub vertices: [u32; 2],
+}
+
+/// The edges on planes of symmetry.
+#[derive(Clone, Debug, Default)]
+pub struct SymmetryEdges {
+    /// The edges.
+    pub edges: Vec<SymmetryEdge>,
+}
+
+impl SymmetryEdges {
+    /// E of one edge over any numbers.
+    pub fn formula<R: Real>(&self, stencil: usize, q: &[R; 10]) -> R {
+        let edge = &self.edges[stencil];
+        let point = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
+        let m: [R; 3] = std::array::from_fn(|d| R::from(edge.normal[d]));
+        let sub = |p: [R; 3], q: [R; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+        let dot = |p: [R; 3], q: [R; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+        let cross = |p: [R; 3], q: [R; 3]| {
+            [
+                p[1] * q[2] - p[2] * q[1],
+                p[2] * q[0] - p[0] * q[2],
+                p[0] * q[1] - p[1] * q[0],
+            ]
+        };
+        let along = sub(point(1), point(0));
+        let normal = cross(along, sub(point(2), point(0)));
+        let r = cross(m, along);
+        let length = dot(along, along).sqrt();
+        let beta = (dot(cross(r, normal), along) / length).atan2(dot(r, normal));
+        let psi = beta + q[9] * edge.sign;
+        psi * psi * (0.5 * edge.stiffness)
+    }
+}
+
+impl LocalEnergy<10, 4> for SymmetryEdges {
+    const NODE_SIZES: [usize; 4] = [3, 3, 3, 1];
+
+    fn name(&self) -> &'static str {
+        "clamps"
+    }
+
+    fn num_stencils(&self) -> usize {
+        self.edges.len()
+    }
+
+    fn nodes(&self, stencil: usize) -> [Option<Dof>; 4] {
+        let edge = &self.edges[stencil];
+        let [a, b, c] = edge.corners.map(Some);
+        [a, b, c, Some(edge.angle)]
+    }
+
+    fn value(&self, stencil: usize, q: &SVector<f64, 10>) -> f64 {
+        self.formula(stencil, &std::array::from_fn(|i| q[i]))
+    }
+
+    fn gradient(&self, stencil: usize, q: &SVector<f64, 10>) -> (f64, SVector<f64, 10>) {
+        let local = self.hessian(stencil, q);
+        (local.value, local.gradient)
+    }
+
+    fn hessian(&self, stencil: usize, q: &SVector<f64, 10>) -> LocalHessian<10> {
+        let variables = std::array::from_fn(|i| Jet::<10>::variable(q[i], i));
+        let jet = self.formula(stencil, &variables);
+        LocalHessian {
+            value: jet.value(),
+            gradient: SVector::from_fn(|i, _| jet.gradient()[i]),
+            hessian: SMatrix::from_fn(|i, j| jet.hessian(i, j)),
+        }
+    }
+
+    fn describe(&self, stencil: usize) -> String {
+        let [u, v] = self.edges[stencil].vertices;
+        format!("edge {u}–{v}")
+    }
+}
