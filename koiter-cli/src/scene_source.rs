@@ -48,6 +48,11 @@ const SHIPPED: &[Shipped] = &[
         meshes: &[],
     },
     Shipped {
+        name: "rolled-strip",
+        text: include_str!("../../scenes/rolled-strip/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
         name: "lateral-buckling",
         text: include_str!("../../scenes/lateral-buckling/scene.toml"),
         meshes: &[],
