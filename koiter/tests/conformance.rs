@@ -6,8 +6,8 @@ use koiter::energy::Membrane;
 use koiter::energy::bending::{
     AngleProfile, ClampedEdge, CorotationalEdge, CorotationalFace, DirectorClamp,
     DiscreteKirchhoff, DiscreteShells, FaceBending, Identity, LaplacianMesh, MidEdgeAverage,
-    MidEdgeBending, QuadraticHinge, QuadraticVertex, Sine, SymmetryEdge, SymmetryEdges, Tangent,
-    bending_stencils, vertex_normals,
+    MidEdgeBending, QuadraticHinge, QuadraticVertex, SecondOrderEdges, SecondOrderFaces, Sine,
+    SymmetryEdge, SymmetryEdges, Tangent, bending_stencils, vertex_normals,
 };
 use koiter::energy::loads::{DirectorMoment, EdgeMoment, Pressure, TurnedDirectors, TurnedEdge};
 use koiter::material::{Homogeneous, StVenantKirchhoff};
@@ -228,6 +228,32 @@ fn dkt_conforms() {
         };
         check(model(forms), &layout, &q, formula, &claims).unwrap();
     }
+}
+
+#[test]
+fn ds_2nd_conforms() {
+    let s = patch(0.0);
+    let mut layout = DofLayout::new();
+    layout.push_nodes(s.rest.mesh.num_vertices(), 3, true);
+    let points = layout.push_nodes(s.rest.mesh.num_edges(), 3, true);
+    let mut at_rest = s.at_rest[..points.0 as usize].to_vec();
+    for [u, v] in s.rest.mesh.edges() {
+        let [u, v] = [u, v].map(|v| s.rest.positions[*v as usize]);
+        at_rest.extend(((u + v) * 0.5).iter());
+    }
+    let moved = |(i, x): (usize, &f64)| x + 0.06 * ((i * 7 + 1) as f64 * 1.3).sin();
+    let q: Vec<f64> = at_rest.iter().enumerate().map(moved).collect();
+    let rigidities = vec![0.7; s.frames.len()];
+    let claims = Claims {
+        rigid_motion_invariant: true,
+        rest: Some(at_rest),
+        ..Claims::default()
+    };
+    let (frames, r) = (s.frames.clone(), rigidities.clone());
+    let faces = SecondOrderFaces::new(&s.rest.mesh, Dof(0), points, frames, r);
+    check(faces, &layout, &q, |e, f, q| e.formula(f, q), &claims).unwrap();
+    let edges = SecondOrderEdges::new(&s.rest, Dof(0), points, &s.frames, &rigidities);
+    check(edges, &layout, &q, |e, i, q| e.formula(i, q), &claims).unwrap();
 }
 
 fn check_hinge<P: AngleProfile>() {

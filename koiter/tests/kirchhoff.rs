@@ -214,11 +214,6 @@ fn rest_directors_of_curved_shapes_are_those_of_the_reference() {
         if model["mesh"] == "octahedron" {
             // Closed, with edges that turn by more than 60°: there are several minima, and ours is the lower one.
             let of_reference = unknowns(&rest.positions, &points(&model["rest_directors"]));
-            println!(
-                "octahedron {} {}",
-                bending.value(&q),
-                bending.value(&of_reference)
-            );
             assert!(bending.value(&q) < bending.value(&of_reference));
             continue;
         }

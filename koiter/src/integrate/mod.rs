@@ -15,7 +15,7 @@ pub use linear_static::LinearStatic;
 pub use offset_surface::OffsetSurfaces;
 pub use quasi_static::QuasiStatic;
 pub use report::{StepError, StepReport};
-pub use rest_directors::relax_directors;
+pub use rest_directors::{relax_directors, relax_edge_points};
 pub use system::{Prescribed, ShellPart, State, System};
 
 /// Advances a state.

@@ -1,4 +1,4 @@
-//! The directors of a given surface: those that minimise its bending energy.
+//! The extra unknowns of a given surface: those that minimise its bending energy.
 
 use std::ops::Range;
 
@@ -6,13 +6,18 @@ use crate::assembly::{ConfigurationSpace, DofLayout, Energy};
 use crate::rest::RestError;
 use crate::solve::{HessianChoice, LinearWorkspace, NewtonOptions, Problem, minimize_stably};
 
-/// Directors move by angles; the step is the largest of them [rad].
-struct Angles;
+/// Directors move by angles; the step is the largest of them [rad]. Points of edges move by lengths, in units of the
+/// length of an edge.
+struct Scaled {
+    unit: f64,
+}
 
-impl ConfigurationSpace for Angles {
+impl ConfigurationSpace for Scaled {
     fn displacement(&self, _q: &[f64], dq: &[f64]) -> f64 {
-        dq.iter()
-            .fold(0.0, |m, d| if d.abs() <= m { m } else { d.abs() })
+        let largest = dq
+            .iter()
+            .fold(0.0, |m, d| if d.abs() <= m { m } else { d.abs() });
+        largest / self.unit
     }
     fn describe(&self, dof: usize) -> String {
         format!("director {dof}")
@@ -32,8 +37,39 @@ pub fn relax_directors(
     range: Range<usize>,
     q: &mut [f64],
 ) -> Result<(), RestError> {
+    relax(vec![bending], layout, range, 1.0, q)
+}
+
+/// Moves the points of edges, the unknowns in `range`, to a minimum of the sum of `energies`; everything else in `q`
+/// stays. `edge_length` [m] says how small a step is small.
+///
+/// # Errors
+/// [`RestError::Directors`] if Newton's method does not converge.
+pub fn relax_edge_points(
+    energies: &mut [Box<dyn Energy>],
+    layout: &DofLayout,
+    range: Range<usize>,
+    edge_length: f64,
+    q: &mut [f64],
+) -> Result<(), RestError> {
+    let energies = energies
+        .iter_mut()
+        .map(|e| &mut **e as &mut dyn Energy)
+        .collect();
+    relax(energies, layout, range, edge_length, q)
+}
+
+fn relax<'a>(
+    energies: Vec<&'a mut (dyn Energy + 'a)>,
+    layout: &DofLayout,
+    range: Range<usize>,
+    unit: f64,
+    q: &mut [f64],
+) -> Result<(), RestError> {
     let mut gradient = vec![0.0; q.len()];
-    bending.add_gradient(q, &mut gradient);
+    for energy in &energies {
+        energy.add_gradient(q, &mut gradient);
+    }
     if gradient[range.clone()].iter().all(|moment| *moment == 0.0) {
         // A flat sheet: nothing to solve for, and the factorisation would be the largest cost of reading a scene.
         return Ok(());
@@ -42,9 +78,9 @@ pub fn relax_directors(
     is_fixed[range].fill(false);
     let target = q.to_vec();
     let mut problem = Problem {
-        energies: vec![bending],
+        energies: energies.into_iter().map(|e| e as &mut dyn Energy).collect(),
         layout,
-        space: &Angles,
+        space: &Scaled { unit },
         is_fixed: &is_fixed,
         target: &target,
     };
@@ -63,7 +99,7 @@ pub fn relax_directors(
         Ok(())
     } else {
         let reason = format!(
-            "the last step was {:.1e} rad after {} iterations",
+            "the last step was {:.1e} after {} iterations",
             report.last_step, report.iterations
         );
         Err(RestError::Directors { reason })

@@ -18,11 +18,12 @@ pub struct BendingModelInfo {
 
 impl BendingModel {
     /// All models.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Bac,
         Self::Dcs,
         Self::Dso,
         Self::Dkt,
+        Self::Ds2nd,
         Self::MeAverage,
         Self::DsTheta,
         Self::DsTan,
@@ -60,6 +61,12 @@ impl BendingModel {
                 what: "Discrete Kirchhoff triangle: directors on vertices; converges, accurate on coarse meshes too, not for sharp folds",
                 unknowns: ExtraUnknowns::VertexDirectors,
                 source: "better-bending-2026, Eq. 28, after batoz-1980",
+            },
+            Self::Ds2nd => BendingModelInfo {
+                name: "ds-2nd",
+                what: "Second-order discrete shells: quadratic patches; for study only, underestimates bending by an order of magnitude or more",
+                unknowns: ExtraUnknowns::EdgePoints,
+                source: "better-bending-2026, Eq. 21, after le-2023",
             },
             Self::MeAverage => BendingModelInfo {
                 name: "me-average",

@@ -20,11 +20,42 @@ struct Source {
     stiffness: f64,
 }
 
+/// The point of an edge between clamped vertices: it moves with them.
+pub(super) struct HeldPoint {
+    /// The point.
+    pub(super) dof: Dof,
+    /// Index of the constraint.
+    pub(super) constraint: usize,
+    /// At time 0 [m].
+    pub(super) start: Vec3,
+}
+
+impl HeldPoint {
+    fn of_constraint(
+        index: usize,
+        constraint: &Constraint,
+        part: &ShellPart,
+        q: &[f64],
+    ) -> Vec<Self> {
+        let held = |(edge, ..): (usize, usize, usize)| {
+            let start = part.first_extra.0 as usize + 3 * edge;
+            Self {
+                dof: Dof(start as u32),
+                constraint: index,
+                start: Vec3::from_column_slice(&q[start..start + 3]),
+            }
+        };
+        held_edges(constraint, part).into_iter().map(held).collect()
+    }
+}
+
 /// All clamped edges and vertices of a scene.
 pub(super) struct Clamps {
     sources: Vec<Source>,
     /// Directors of clamped vertices.
     pub(super) held_directors: Vec<HeldDirector>,
+    /// Points of edges between clamped vertices.
+    pub(super) held_points: Vec<HeldPoint>,
 }
 
 impl Clamps {
@@ -33,6 +64,7 @@ impl Clamps {
     pub(super) fn new(model: &Model, parts: &[ShellPart], q: &[f64]) -> (Self, DirectorClamp) {
         let mut sources = Vec::new();
         let mut held_directors = Vec::new();
+        let mut held_points = Vec::new();
         let mut edges = Vec::new();
         for (index, constraint) in model.constraints.iter().enumerate() {
             let (shell, part) = (&model.shells[constraint.shell], &parts[constraint.shell]);
@@ -49,7 +81,11 @@ impl Clamps {
                     );
                     continue;
                 }
-                ExtraUnknowns::None | ExtraUnknowns::EdgePoints => continue,
+                ExtraUnknowns::EdgePoints => {
+                    held_points.extend(HeldPoint::of_constraint(index, constraint, part, q));
+                    continue;
+                }
+                ExtraUnknowns::None => continue,
             }
             for (edge, face, corner) in held_edges(constraint, part) {
                 let vertices = part.mesh.faces()[face];
@@ -82,6 +118,7 @@ impl Clamps {
         let clamps = Self {
             sources,
             held_directors,
+            held_points,
         };
         (clamps, DirectorClamp { edges })
     }

@@ -8,6 +8,7 @@ use super::assemble::{BuildError, Unknowns, write_points};
 use super::model::{BendingModel, Model, Shell};
 use super::position_bending::PositionBending;
 use super::vertex_directors::kirchhoff_bending;
+use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::energy::Membrane;
 use crate::energy::bending::{
@@ -90,9 +91,9 @@ fn bending_energy(
     layout: &DofLayout,
     q: &mut [f64],
     masses: &mut [f64],
-) -> Result<Option<Box<dyn Energy>>, RestError> {
+) -> Result<Vec<Box<dyn Energy>>, RestError> {
     let positions = |part| PositionBending::new(shell, part, layout);
-    Ok(match shell.bending {
+    let energy = match shell.bending {
         BendingModel::Bac => director_bending::<Tangent>(shell, part, layout, q, masses)?,
         BendingModel::Dcs => director_bending::<Sine>(shell, part, layout, q, masses)?,
         BendingModel::Dso => director_bending::<Identity>(shell, part, layout, q, masses)?,
@@ -107,8 +108,23 @@ fn bending_energy(
         BendingModel::QbInt => {
             Some(positions(part).quadratic_vertex(LaplacianMesh::IntrinsicDelaunay))
         }
+        BendingModel::Ds2nd => {
+            start_edge_points(part, q);
+            return Ok(positions(part).second_order());
+        }
         BendingModel::None => None,
-    })
+    };
+    Ok(energy.into_iter().collect())
+}
+
+/// Points of edges start at the middles of the edges: each patch is then the triangle, and the first step finds better.
+fn start_edge_points(part: &ShellPart, q: &mut [f64]) {
+    let middle = |[u, v]: &[u32; 2]| {
+        let [u, v] = [u, v].map(|v| part.position(*v as usize, q));
+        (u + v) * 0.5
+    };
+    let middles: Vec<Vec3> = part.mesh.edges().iter().map(middle).collect();
+    write_points(q, part.first_extra, &middles);
 }
 
 /// How the directors of edges depend on tilts.
@@ -117,6 +133,7 @@ fn director_shape(bending: BendingModel) -> DirectorShape {
         BendingModel::Bac => DirectorShape::Tangent,
         BendingModel::Dcs | BendingModel::Dso => DirectorShape::Unit,
         BendingModel::Dkt
+        | BendingModel::Ds2nd
         | BendingModel::MeAverage
         | BendingModel::DsTheta
         | BendingModel::DsTan

@@ -24,6 +24,9 @@ pub enum BendingModel {
     Dso,
     /// Discrete Kirchhoff triangle: unit directors at the vertices.
     Dkt,
+    /// Second-order discrete shells: quadratic patches with a point on every edge, as studied; it underestimates bending.
+    #[cfg_attr(feature = "serde", serde(rename = "ds-2nd"))]
+    Ds2nd,
     /// Averaged mid-edge normals: the director models without directors.
     MeAverage,
     /// Discrete Shells hinge, energy quadratic in the hinge angle.

@@ -1,4 +1,4 @@
-//! Bending energies of a shell whose model has no unknowns beside positions.
+//! Bending energies of a shell whose model has no unknowns beside positions, of vertices or of points on edges.
 
 use nalgebra::Vector3;
 
@@ -8,7 +8,7 @@ use super::model::Shell;
 use crate::assembly::{Assembled, DofLayout, Energy};
 use crate::energy::bending::{
     AngleProfile, CorotationalEdge, CorotationalFace, DiscreteShells, FaceBending, LaplacianMesh,
-    MidEdgeAverage, QuadraticHinge, QuadraticVertex,
+    MidEdgeAverage, QuadraticHinge, QuadraticVertex, SecondOrderEdges, SecondOrderFaces,
 };
 use crate::integrate::ShellPart;
 use crate::mesh::Surface;
@@ -61,6 +61,19 @@ impl<'a> PositionBending<'a> {
             &self.rigidity,
         );
         Box::new(Assembled::new(faces, self.layout))
+    }
+
+    /// Patches, and what is between them.
+    pub(super) fn second_order(&self) -> Vec<Box<dyn Energy>> {
+        let (part, rigidity) = (self.part, &self.rigidity);
+        let (first, points, frames) = (part.first_vertex, part.first_extra, &part.frames);
+        let edges = SecondOrderEdges::new(&self.rest, first, points, frames, rigidity);
+        let (frames, rigidity) = (frames.clone(), rigidity.clone());
+        let faces = SecondOrderFaces::new(&part.mesh, first, points, frames, rigidity);
+        vec![
+            Box::new(Assembled::new(faces, self.layout)),
+            Box::new(Assembled::new(edges, self.layout)),
+        ]
     }
 
     pub(super) fn quadratic_hinge(&self) -> Box<dyn Energy> {

@@ -4,7 +4,7 @@ use super::assemble::{Assembly, BuildError, assemble};
 use super::clamps::Clamps;
 use super::display::{PartTopology, tessellate};
 use super::loads::set_factors;
-use super::model::{IntegratorKind, Model};
+use super::model::{Constraint, IntegratorKind, Model};
 use super::symmetry::held_by;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, Energy};
@@ -180,13 +180,21 @@ impl Simulation {
                 }
             }
         }
-        for held in &self.clamps.held_directors {
-            let constraint = &self.model.constraints[held.constraint];
+        let mut hold = |index: usize, dof: Dof, at: &dyn Fn(&Constraint) -> Vec3| {
+            let constraint = &self.model.constraints[index];
             if time <= constraint.until {
-                let range = held.dof.0 as usize..held.dof.0 as usize + 3;
+                let range = dof.0 as usize..dof.0 as usize + 3;
                 is_fixed[range.clone()].fill(true);
-                target[range].copy_from_slice(held.at(constraint, time).as_slice());
+                target[range].copy_from_slice(at(constraint).as_slice());
             }
+        };
+        for held in &self.clamps.held_directors {
+            hold(held.constraint, held.dof, &|c| held.at(c, time));
+        }
+        for held in &self.clamps.held_points {
+            hold(held.constraint, held.dof, &|c| {
+                c.motion.apply(held.start, time)
+            });
         }
         for (dof, value) in held_by(&self.model, &self.system.space.shells) {
             is_fixed[dof] = true;

@@ -116,6 +116,15 @@ fn check_thickness(shell: &Shell, path: &str) -> Option<Warning> {
 
 /// A bending model that is not made for this rest shape.
 fn check_bending(shell: &Shell, path: &str) -> Option<Warning> {
+    if shell.bending == BendingModel::Ds2nd {
+        let message = format!(
+            "shell '{}' bends with 'ds-2nd', which underestimates bending by an order of magnitude or more, and takes every \
+             rest shape for a flat one",
+            shell.name
+        );
+        let help = "it is here as it was studied; use bac for results";
+        return Some(warning(message, format!("{path}.bending"), help));
+    }
     let is_flat_only = matches!(
         shell.bending,
         BendingModel::QbCr | BendingModel::QbPl | BendingModel::QbInt

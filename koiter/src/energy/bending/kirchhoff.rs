@@ -66,13 +66,11 @@ impl<S: Section> DiscreteKirchhoff<S> {
             let [x, d] = [first_vertex, first_director].map(|first| face.map(|v| first.0 + 3 * v));
             [x[0], x[1], x[2], d[0], d[1], d[2]].map(Dof)
         };
-        let rigidity = |face| {
-            let tangent = section.bend(face, &Vector3::zeros()).tangent;
-            0.5 * (tangent[(0, 0)] + tangent[(1, 1)])
-        };
         Self {
             faces: mesh.faces().iter().map(nodes).collect(),
-            length_stiffness: (0..mesh.num_faces()).map(rigidity).collect(),
+            length_stiffness: (0..mesh.num_faces())
+                .map(|face| section.flexural_rigidity(face))
+                .collect(),
             frames,
             rest_forms,
             section,

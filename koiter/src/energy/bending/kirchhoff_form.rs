@@ -21,15 +21,9 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
+use super::quadratic_basis::{SAMPLES, slopes};
 use crate::Vec3;
 use crate::rest::RestFrame;
-
-/// The points at which a face is sampled, each with a third of its area.
-const SAMPLES: [[f64; 2]; 3] = [
-    [1.0 / 6.0, 1.0 / 6.0],
-    [2.0 / 3.0, 1.0 / 6.0],
-    [1.0 / 6.0, 2.0 / 3.0],
-];
 
 /// The edge of a `z`: its weights in e₁, e₂; which of e₁, e₂ is e'; the directors at its ends.
 struct EdgeTerm {
@@ -249,18 +243,9 @@ impl FormMatrices {
 }
 
 /// The matrix that takes y to the components `11, 22, 12` of II, in the basis of the edges, at a point.
-fn edge_form_matrix([s, t]: [f64; 2]) -> SMatrix<f64, 3, 9> {
-    // ∂_s and ∂_t of the basis functions of the nodes i, j, k, jk, ki, ij.
-    let slopes = [
-        [4.0 * (s + t) - 3.0, 4.0 * (s + t) - 3.0],
-        [4.0 * s - 1.0, 0.0],
-        [0.0, 4.0 * t - 1.0],
-        [4.0 * t, 4.0 * s],
-        [-4.0 * t, 4.0 * (1.0 - s - 2.0 * t)],
-        [4.0 * (1.0 - 2.0 * s - t), -4.0 * s],
-    ];
+fn edge_form_matrix(point: [f64; 2]) -> SMatrix<f64, 3, 9> {
     let mut matrix = SMatrix::zeros();
-    for (node, [by_s, by_t]) in slopes.into_iter().enumerate() {
+    for (node, [by_s, by_t]) in slopes(point).into_iter().enumerate() {
         let [by_1, by_2] = products(node);
         let rows = [by_1 * by_s, by_2 * by_t, (by_1 * by_t + by_2 * by_s) * 0.5];
         for (row, values) in rows.iter().enumerate() {
