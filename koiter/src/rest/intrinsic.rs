@@ -2,8 +2,9 @@
 //!
 //! An edge is intrinsic Delaunay if its two opposite angles sum to at most π: `cot φ + cot φ' ≥ 0`. Flipping edges that are
 //! not, each laid out flat with its two faces, ends in the intrinsic Delaunay triangulation of the polyhedral surface; its
-//! cotangent Laplacian has no negative weights. The surface and its vertices stay, only the straight edges upon it change. Two vertices may then
-//! share several edges, and an edge may end where it began, so faces are glued side to side and edges have no names.
+//! cotangent Laplacian has no negative weights. The surface and its vertices stay, only the straight edges upon it change.
+//! Two vertices may then share several edges, and an edge may end where it began, so faces are glued side to side and edges
+//! have no names.
 //!
 //! Reference: Bobenko and Springborn, "A Discrete Laplace–Beltrami Operator for Simplicial Surfaces" (2007): every edge
 //! that is not Delaunay can be flipped, and flips end.

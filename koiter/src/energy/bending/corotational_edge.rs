@@ -10,9 +10,10 @@
 //! deformed altitudes a, a' [m] and the hinge angle θ: it is what is computed. Interior edges only. Reference: "Better
 //! Bending" (2026), Eqs. (9)–(12), after Liang (2025).
 //!
-//! Nearly as cheap as DS(θ), and exact in the limit for a cylinder on a regular mesh; on irregular meshes its energy does
-//! not converge, since it squares the curvature of single edges. The sine bounds the penalty on sharp folds, so folds
-//! can close.
+//! Nearly as cheap as DS(θ), and exact in the limit on regular meshes that are aligned with the bending; elsewhere its
+//! energy does not converge, since it squares the curvature of single edges: a third of that of DS(θ), too large on
+//! irregular sheets and too small on a sphere. The force against a fold weakens beyond a right angle (group II of the study), so
+//! folds collapse.
 
 use nalgebra::{Matrix3, SMatrix, SVector};
 

@@ -11,8 +11,8 @@
 //! angle θ_c: it is what is computed. κ_c = 0 on boundary edges. Reference: "Better Bending" (2026), Eqs. (13), (14),
 //! after Liang (2025).
 //!
-//! Exact in the limit for a cylinder on a regular mesh, positions only; on irregular meshes its energy does not converge.
-//! The sine has its maximum at θ = 90°: beyond it a fold loses its stiffness, and a closed one has none.
+//! Exact in the limit on regular meshes that are aligned with the bending; elsewhere its energy does not converge. The
+//! sine has its maximum at θ = 90°: beyond it the force closes the fold (group I of the study), so keep it from sharp ones.
 
 use nalgebra::{Matrix3, Vector3};
 

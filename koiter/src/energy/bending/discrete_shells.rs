@@ -10,10 +10,11 @@
 //! Grinspun et al., "Discrete Shells" (2003), and Tamstorf and Grinspun, "Discrete Bending Forces and Their Jacobians"
 //! (2013). Both agree to second order at a flat rest state.
 //!
-//! DS(θ) is the familiar baseline: cheap and robust. DS(tan) adds a barrier at |θ| = π, so that a hinge never closes on
-//! itself. The energy of neither converges under refinement, not even on a regular mesh that is aligned with the
-//! bending, where it is three times too large; on anisotropic meshes it is up to a hundred times. With curved rest
-//! shapes the error is of the same size. Choose a director model where stiffness matters.
+//! DS(θ) is the familiar baseline, cheap and robust: energy and force grow with the fold but stay bounded, so loads may
+//! close a hinge (group III of the study). DS(tan) adds a barrier at |θ| = π, so that a hinge never closes on itself
+//! (group IV). The energy of neither converges under refinement, not even on a regular mesh that is aligned with the
+//! bending, where it is three times too large; on anisotropic meshes it is a hundred times. Choose a director model where
+//! stiffness matters.
 
 use std::marker::PhantomData;
 

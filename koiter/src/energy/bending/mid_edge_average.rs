@@ -12,8 +12,8 @@
 //! "Better Bending" (2026), Eqs. (35), (36), after Chen et al. (2018).
 //!
 //! The director models without directors: positions only, any material. Exact in the limit on regular meshes that are
-//! aligned with the bending; elsewhere its energy does not converge, on anisotropic meshes it is many times too large.
-//! q_c is bounded, so folds can close.
+//! aligned with the bending; elsewhere its energy does not converge, on anisotropic meshes it is many times too large. The
+//! force against a fold weakens beyond a right angle (group II of the study), so folds collapse.
 
 use nalgebra::{Matrix3, SVector, Vector3};
 

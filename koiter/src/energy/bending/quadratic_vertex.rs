@@ -8,17 +8,18 @@
 //!
 //! x positions [m], φ, φ' the rest angles opposite edge i j, cot_j cotangent of the rest angle at j, M_i a third of the
 //! rest area around vertex i [m²], h thickness [m], α, β plane-stress Lamé parameters [Pa], C_i the mean of C over the faces
-//! of the vertex, weighted by area. N is the outward derivative at the boundary: without it the boundary is
-//! pulled inwards, with it L + N annihilates linear functions. Reference: "Better Bending" (2026), Eqs. (38)–(40), after
+//! of the vertex, weighted by area. N is the outward derivative at the boundary: without it the boundary is pulled inwards,
+//! with it L + N annihilates linear functions. Reference: "Better Bending" (2026), Eqs. (38)–(40), after
 //! Bergou et al. (2006), Stein et al. (2018), and for the intrinsic Laplacian Sharp and Crane (2020).
 //!
 //! QB(int) takes L and N from the intrinsic Delaunay triangulation of the rest shape, and M from its faces as they are.
 //!
 //! The Hessian `(L + N)ᵀ C M⁻¹ (L + N)` is constant and positive semidefinite, and couples vertices at two edges' distance.
-//! Far more accurate than QB(CR): exact in the limit on regular meshes; on irregular ones its energy does not converge,
-//! since it squares a curvature that is right on average only, but comes within about a tenth; QB(PL) fails on anisotropic
-//! meshes that are not Delaunay. Both assume a flat rest shape and small stretch: curvature of a rest shape is ignored,
-//! and strips buckle too early.
+//! Far more accurate than QB(CR): exact in the limit on regular meshes. On irregular ones the energy does not converge,
+//! since it squares a curvature that is right on average only: in the study QB(int) is 2 to 26 % too large, QB(PL) is up to
+//! 27 times too large where the mesh is anisotropic and not Delaunay. The force against a fold weakens beyond a right angle
+//! (group II), so folds collapse, and strips buckle too early. Both assume a flat rest shape and small stretch: curvature of
+//! a rest shape is ignored.
 
 use crate::Vec3;
 use crate::assembly::{
