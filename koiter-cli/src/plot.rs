@@ -81,6 +81,7 @@ fn chart(title: &str, lines: &[Value], is_over: bool) -> Chart {
             .zip(lines)
             .map(|(&time, line)| [time, value(line)])
             .collect(),
+        ..Series::default()
     };
     let by_name = |key: &str| -> Vec<Series> {
         let all = names(lines, key);
@@ -131,6 +132,7 @@ fn chart(title: &str, lines: &[Value], is_over: bool) -> Chart {
             panel("contacts", "", Style::Stack, 1.0, single("contacts")),
             gap,
         ],
+        ..Chart::default()
     }
 }
 

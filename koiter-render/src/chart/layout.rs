@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, vertical_axis};
 use super::reduce::{columns, pieces};
-use super::{Anchor, Chart, Mark, Panel, Style};
+use super::{Anchor, Arrangement, Chart, Mark, Panel, Series, Style};
 use crate::font::Typeface;
 
 /// Colours that colour-blind people can tell apart (Okabe and Ito, 2008), without the yellow, which is lost on white.
@@ -24,6 +24,9 @@ const FRAME: [u8; 3] = [140, 144, 150];
 const TEXT: f64 = 1.0 / 62.0;
 const LEAST_TEXT: f64 = 9.0;
 
+/// Radius of signs at points, in heights of letters.
+const MARKER: f64 = 0.36;
+
 /// All marks, those behind first.
 pub(super) fn marks(chart: &Chart, (width, height): (u32, u32)) -> Vec<Mark> {
     let (width, height) = (f64::from(width), f64::from(height));
@@ -44,24 +47,56 @@ pub(super) fn marks(chart: &Chart, (width, height): (u32, u32)) -> Vec<Mark> {
     };
     sheet.words(&chart.title, [left, 1.6 * size], Anchor::Start, 1.15 * size);
 
-    let x = Axis::linear(chart.x_range.0, chart.x_range.1, (left, right));
-    let weights: f64 = chart.panels.iter().map(|panel| panel.weight).sum();
+    let horizontal = |left: f64, right: f64| {
+        let (low, high) = chart.x_range;
+        match chart.x_is_log {
+            true => Axis::logarithmic(low, high, (left, right)),
+            false => Axis::linear(low, high, (left, right)),
+        }
+    };
     // Above each panel stands its name.
     let heading = 2.2 * size;
-    let unit = (bottom - top - heading * chart.panels.len() as f64) / weights;
-    let mut next = top;
-    for panel in &chart.panels {
-        let frame = Frame {
-            left,
-            right,
-            top: next + heading,
-            bottom: next + heading + (unit * panel.weight).max(1.0),
-        };
-        sheet.panel(panel, &x, &frame);
-        next = frame.bottom;
+    let weights: f64 = chart.panels.iter().map(|panel| panel.weight).sum();
+    match chart.arrangement {
+        Arrangement::Below => {
+            let x = horizontal(left, right);
+            let unit = (bottom - top - heading * chart.panels.len() as f64) / weights;
+            let mut next = top;
+            for panel in &chart.panels {
+                let frame = Frame {
+                    left,
+                    right,
+                    top: next + heading,
+                    bottom: next + heading + (unit * panel.weight).max(1.0),
+                };
+                sheet.panel(panel, &x, &frame);
+                next = frame.bottom;
+            }
+            sheet.x_labels(&x, &chart.x_label, (left, right, next));
+        }
+        Arrangement::Beside => {
+            let margins = left + (width - right);
+            let unit = (width - margins * chart.panels.len() as f64) / weights;
+            let mut next = 0.0;
+            for panel in &chart.panels {
+                let frame = Frame {
+                    left: next + left,
+                    right: next + left + (unit * panel.weight).max(1.0),
+                    top: top + heading,
+                    bottom,
+                };
+                let x = horizontal(frame.left, frame.right);
+                sheet.panel(panel, &x, &frame);
+                sheet.x_labels(&x, &chart.x_label, (frame.left, frame.right, bottom));
+                next = frame.right + (width - right);
+            }
+        }
     }
-    sheet.x_labels(&x, &chart.x_label, (left, right, next));
     sheet.marks
+}
+
+fn color(number: usize, series: &Series) -> [u8; 3] {
+    series.color.unwrap_or(COLORS[number % COLORS.len()])
 }
 
 struct Frame {
@@ -122,12 +157,15 @@ impl Sheet {
     fn curves(&mut self, panel: &Panel, x: &Axis, y: &Axis) {
         let width = 0.15 * self.size;
         for (number, series) in panel.series.iter().enumerate() {
-            let color = COLORS[number % COLORS.len()];
-            let points = series
-                .points
-                .iter()
-                .map(|&[a, b]| Some([x.pixel(a)?, y.pixel(b)?]));
-            for piece in pieces(points) {
+            let color = color(number, series);
+            let place = |&[a, b]: &[f64; 2]| Some([x.pixel(a)?, y.pixel(b)?]);
+            if let Some(marker) = series.marker {
+                for at in series.points.iter().filter_map(place) {
+                    let points = marker.outline(at, MARKER * self.size);
+                    self.marks.push(Mark::Area { points, color });
+                }
+            }
+            for piece in pieces(series.points.iter().map(place)) {
                 match piece[..] {
                     // A single point has no line: it becomes a square.
                     [[a, b]] => {
@@ -192,7 +230,7 @@ impl Sheet {
             points.extend(stairs(&base).into_iter().rev());
             self.marks.push(Mark::Area {
                 points,
-                color: COLORS[number % COLORS.len()],
+                color: color(number, &panel.series[number]),
             });
             base = tops;
         }
@@ -219,14 +257,18 @@ impl Sheet {
         for (row, (number, name)) in entries.into_iter().enumerate() {
             let middle = frame.top + (row as f64 + 0.5) * pitch;
             let left = frame.right + 0.9 * self.size;
-            let (color, half) = (COLORS[number % COLORS.len()], 0.32 * size);
+            let series = &panel.series[number];
+            let (color, half) = (color(number, series), 0.32 * size);
             let square = [
                 [0.0, -half],
                 [1.2 * size, -half],
                 [1.2 * size, half],
                 [0.0, half],
             ];
-            let points = square.map(|[a, b]| [left + a, middle + b]).to_vec();
+            let points = match series.marker {
+                Some(marker) => marker.outline([left + 0.6 * size, middle], MARKER * size),
+                None => square.map(|[a, b]| [left + a, middle + b]).to_vec(),
+            };
             self.marks.push(Mark::Area { points, color });
             self.words(
                 name,

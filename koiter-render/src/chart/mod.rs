@@ -1,10 +1,11 @@
-//! Charts over a common horizontal axis: panels below each other, as SVG or as a picture.
+//! Charts over a common horizontal axis: panels below or beside each other, as SVG or as a picture.
 //!
 //! A chart is data ([`Chart`]); `layout` makes marks of it (lines, areas, words at pixels), and `svg` and `raster` write
 //! the same marks. Numbers that are not finite are gaps.
 
 mod axis;
 mod layout;
+mod marker;
 mod raster;
 mod reduce;
 mod svg;
@@ -13,7 +14,7 @@ use crate::image::Image;
 use crate::options::MAX_SIDE;
 use crate::{RenderError, Rgb};
 
-/// Panels below each other over one horizontal axis.
+/// Panels over one horizontal axis.
 #[derive(Clone, Debug, Default)]
 pub struct Chart {
     /// Above everything.
@@ -22,8 +23,22 @@ pub struct Chart {
     pub x_label: String,
     /// Where the horizontal axis begins and ends.
     pub x_range: (f64, f64),
-    /// From above.
+    /// Whether the horizontal axis is logarithmic.
+    pub x_is_log: bool,
+    /// How the panels stand.
+    pub arrangement: Arrangement,
+    /// From above, or from the left.
     pub panels: Vec<Panel>,
+}
+
+/// How the panels of a chart stand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Arrangement {
+    /// Below each other, over one horizontal axis.
+    #[default]
+    Below,
+    /// Beside each other, each with the horizontal axis of its own, all alike.
+    Beside,
 }
 
 /// One panel.
@@ -62,7 +77,13 @@ pub struct Series {
     pub name: String,
     /// Values of x, increasing, and of y; in a stack all series have the same x.
     pub points: Vec<[f64; 2]>,
+    /// Red, green and blue; else the colours are taken in their order.
+    pub color: Option<[u8; 3]>,
+    /// Drawn at every point of a curve.
+    pub marker: Option<Marker>,
 }
+
+pub use marker::Marker;
 
 impl Chart {
     /// The chart as an SVG document.

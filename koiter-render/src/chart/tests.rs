@@ -4,6 +4,7 @@ fn series(name: &str, points: &[[f64; 2]]) -> Series {
     Series {
         name: name.into(),
         points: points.to_vec(),
+        ..Series::default()
     }
 }
 
@@ -24,6 +25,7 @@ fn chart(panels: Vec<Panel>) -> Chart {
         x_label: "time [s]".into(),
         x_range: (0.0, 2.0),
         panels,
+        ..Chart::default()
     }
 }
 
@@ -185,4 +187,48 @@ fn words_do_not_overlap() {
             }
         }
     }
+}
+
+#[test]
+fn panels_beside_each_other_have_axes_of_their_own_and_signs_at_points() {
+    let marked = |name: &str, marker, color| Series {
+        marker: Some(marker),
+        color: Some(color),
+        ..series(name, &[[10.0, 1e-1], [100.0, 1e-2], [1000.0, 1e-3]])
+    };
+    let colors = [[1, 2, 3], [4, 5, 6]];
+    let panels = colors.map(|color| {
+        let both = [Marker::Circle, Marker::Cross].map(|sign| marked("a", sign, color));
+        panel(Style::LogLines, both.to_vec())
+    });
+    let chart = Chart {
+        x_range: (10.0, 1000.0),
+        x_is_log: true,
+        arrangement: Arrangement::Beside,
+        ..chart(panels.to_vec())
+    };
+    let marks = layout::marks(&chart, (1200, 600));
+    let span = |wanted: [u8; 3]| {
+        let lines = marks.iter().filter_map(|mark| match mark {
+            Mark::Line { points, color, .. } if *color == wanted => Some(points),
+            _ => None,
+        });
+        let ends: Vec<f64> = lines.flatten().map(|point| point[0]).collect();
+        // Equal factors are equal distances.
+        assert!(
+            (ends[1] - 0.5 * (ends[0] + ends[2])).abs() < 1e-9,
+            "{ends:?}"
+        );
+        (ends[0], ends[2])
+    };
+    let [left, right] = colors.map(span);
+    assert!(left.0 < left.1 && left.1 < right.0 && right.0 < right.1);
+    let signs = |wanted: [u8; 3]| {
+        let areas = marks.iter();
+        areas
+            .filter(|mark| matches!(mark, Mark::Area { color, .. } if *color == wanted))
+            .count()
+    };
+    // Three points and the legend, for two curves.
+    assert_eq!(colors.map(signs), [8, 8]);
 }
