@@ -16,9 +16,14 @@ pub struct Assembled<L, const N: usize, const K: usize> {
     local: L,
     /// First unknown and node of every local node; `None` where a neighbour is missing.
     nodes: Vec<[Option<(Dof, NodeId)>; K]>,
-    /// For each element the slots of its `K (K + 1) / 2` blocks, lower triangle by rows.
+    /// For each element the slots of its `K (K + 1) / 2` blocks, lower triangle by rows; [`NO_SLOT`] where a neighbour is
+    /// missing or a node is not solved for.
     slots: Vec<u32>,
+    num_solved_nodes: u32,
 }
+
+/// Of a block that has no place in the matrix.
+const NO_SLOT: u32 = u32::MAX;
 
 impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
     /// Gathers the element's nodes once.
@@ -34,6 +39,7 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
             local,
             nodes,
             slots: Vec::new(),
+            num_solved_nodes: layout.num_solved_nodes() as u32,
         }
     }
 
@@ -92,9 +98,11 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
             for (j, node_j) in self.nodes[stencil][..=i].iter().enumerate() {
                 if let (Some((_, a)), Some((_, b))) = (node_i, node_j) {
                     let (row, column) = (starts[i], starts[j]);
-                    hessian.add_at(self.slots[slot], *a, *b, i == j, |r, c| {
-                        local[(row + r, column + c)]
-                    });
+                    let entry = |r, c| local[(row + r, column + c)];
+                    match self.slots[slot] {
+                        NO_SLOT => hessian.add(*a, *b, i == j, entry),
+                        slot => hessian.add_at(slot, *a, *b, i == j, entry),
+                    }
                 }
                 slot += 1;
             }
@@ -177,7 +185,8 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
 
     fn add_to_pattern(&self, _q: &[f64], pattern: &mut PatternBuilder) {
         for nodes in &self.nodes {
-            pattern.couple(nodes.iter().flatten().map(|(_, node)| *node));
+            let all = nodes.iter().flatten().map(|(_, node)| *node);
+            pattern.couple(all.filter(|node| node.0 < self.num_solved_nodes));
         }
     }
 
@@ -190,10 +199,10 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
             let i = (((8 * pair + 1) as f64).sqrt() as usize - 1) / 2;
             let j = pair - i * (i + 1) / 2;
             match (nodes[stencil][i], nodes[stencil][j]) {
-                (Some((_, a)), Some((_, b))) => pattern
+                (Some((_, a)), Some((_, b))) if a.max(b).0 < self.num_solved_nodes => pattern
                     .slot(a.max(b), a.min(b))
                     .expect("the element is in the pattern"),
-                _ => u32::MAX,
+                _ => NO_SLOT,
             }
         });
     }

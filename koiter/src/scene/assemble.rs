@@ -155,19 +155,8 @@ impl Unknowns {
     /// All vertices, then what the bending models add to them, then the obstacles, whose motion is prescribed.
     fn new(model: &Model) -> Self {
         let mut layout = DofLayout::new();
-        let vertices = model
-            .shells
-            .iter()
-            .map(|s| layout.push_nodes(s.surface.mesh.num_vertices(), 3, true))
-            .collect();
-        let extras = model
-            .shells
-            .iter()
-            .map(|s| {
-                let extra = s.bending.info().unknowns;
-                layout.push_nodes(extra.num_nodes(&s.surface.mesh), extra.node_size(), true)
-            })
-            .collect();
+        let vertices = push_vertices(model, &mut layout, true);
+        let extras = push_extras(model, &mut layout);
         let obstacles = model
             .obstacles
             .iter()
@@ -184,8 +173,21 @@ impl Unknowns {
         }
     }
 
+    /// Only what the bending models add is solved for; the vertices come after it and are held. Without obstacles.
+    pub(super) fn with_held_vertices(model: &Model) -> Self {
+        let mut layout = DofLayout::new();
+        let extras = push_extras(model, &mut layout);
+        let vertices = push_vertices(model, &mut layout, false);
+        Self {
+            layout,
+            vertices,
+            extras,
+            obstacles: Vec::new(),
+        }
+    }
+
     /// Positions and velocities at time 0; the extra unknowns are not known yet.
-    fn start(&self, model: &Model) -> (Vec<f64>, Vec<f64>) {
+    pub(super) fn start(&self, model: &Model) -> (Vec<f64>, Vec<f64>) {
         let mut q = vec![0.0; self.layout.num_dofs()];
         let mut velocities = q.clone();
         for (shell, first) in model.shells.iter().zip(&self.vertices) {
@@ -201,6 +203,19 @@ impl Unknowns {
         }
         (q, velocities)
     }
+}
+
+fn push_vertices(model: &Model, layout: &mut DofLayout, solved: bool) -> Vec<Dof> {
+    let mut push = |s: &Shell| layout.push_nodes(s.surface.mesh.num_vertices(), 3, solved);
+    model.shells.iter().map(&mut push).collect()
+}
+
+fn push_extras(model: &Model, layout: &mut DofLayout) -> Vec<Dof> {
+    let mut push = |s: &Shell| {
+        let extra = s.bending.info().unknowns;
+        layout.push_nodes(extra.num_nodes(&s.surface.mesh), extra.node_size(), true)
+    };
+    model.shells.iter().map(&mut push).collect()
 }
 
 pub(super) fn write_points(q: &mut [f64], first: Dof, points: &[Vec3]) {

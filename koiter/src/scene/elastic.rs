@@ -37,7 +37,7 @@ impl Elastic {
     ) -> Result<Self, BuildError> {
         let mut elastic = Self {
             energies: Vec::new(),
-            masses: vec![0.0; unknowns.layout.num_solved_dofs()],
+            masses: vec![0.0; unknowns.layout.num_dofs()],
             parts: Vec::new(),
         };
         let firsts = unknowns.vertices.iter().zip(&unknowns.extras);
@@ -49,6 +49,7 @@ impl Elastic {
                     error,
                 })?;
         }
+        elastic.masses.truncate(unknowns.layout.num_solved_dofs());
         Ok(elastic)
     }
 
@@ -215,7 +216,7 @@ fn director_bending<P: AngleProfile + 'static>(
     let mut energy = bending(part, part.rest_forms.clone());
     // From the rest directors: where the start shape is the rest shape this is the exact minimum, round-off included.
     q[angles.clone()].copy_from_slice(&rest_q[angles.clone()]);
-    if shell.surface.positions != shell.rest_positions || !shell.rest_curved {
+    if shell.surface.positions != shell.rest_positions {
         relax_directors(&mut energy, layout, angles, q)?;
     }
     Ok(Some(Box::new(energy)))

@@ -13,6 +13,7 @@ mod elastic;
 mod fingerprint;
 mod free_parts;
 mod loads;
+pub mod measure;
 pub mod model;
 mod modes;
 mod position_bending;

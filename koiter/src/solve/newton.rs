@@ -73,6 +73,8 @@ pub struct NewtonReport {
     pub indefinite: usize,
     /// Saddles that were left.
     pub saddles: usize,
+    /// Whether the last step was one with the exact Hessian: then that is positive definite.
+    pub ends_definite: bool,
 }
 
 impl NewtonReport {
@@ -139,7 +141,9 @@ pub fn minimize_stably(
 ) -> Result<NewtonReport, SolveError> {
     let mut report = minimize(problem, options, workspace, q)?;
     for _ in 0..MAX_SADDLES {
+        // A last step within the tolerance ends where its Hessian was taken.
         if !report.converged
+            || report.ends_definite
             || !leave_saddle(problem, workspace, options.tolerance, q, &mut report)?
         {
             break;
@@ -290,7 +294,10 @@ fn factorized_system(
         };
         report.spend("linear_solve", start);
         match factorized {
-            Ok(()) => return Ok((gradient, rhs)),
+            Ok(()) => {
+                report.ends_definite = projection == PsdProjection::Exact;
+                return Ok((gradient, rhs));
+            }
             Err(dof) if projection == PsdProjection::Clamp => {
                 return Err(SolveError::Indefinite {
                     unknown: problem.space.describe(dof),

@@ -4,6 +4,7 @@ use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation,
 };
 
+use super::split_mix::SplitMix64;
 use super::{GeneratorError, build, check_face_count, check_positive, face_count};
 use crate::Vec3;
 use crate::mesh::Surface;
@@ -37,7 +38,9 @@ pub fn irregular(
     let expected_faces = face_count::irregular(width, depth, max_area);
     check_face_count(expected_faces)?;
 
-    let (mut points, segments) = boundary_points(width, depth, spacing);
+    let segments_along = |length: f64| (length / spacing).round().max(1.0) as usize;
+    let counts = [segments_along(width), segments_along(depth)];
+    let (mut points, segments) = boundary_points(width, depth, counts);
     scatter_inside(width, depth, spacing, seed, &mut points);
     let mut triangulation = ConstrainedDelaunayTriangulation::<Point2<f64>>::bulk_load_cdt(
         points, segments,
@@ -74,15 +77,18 @@ pub fn irregular(
     Ok(surface)
 }
 
-/// Points on the boundary at about `spacing`, counter-clockwise, and the segments between them.
-fn boundary_points(width: f64, depth: f64, spacing: f64) -> (Vec<Point2<f64>>, Vec<[usize; 2]>) {
+/// Points that split the sides along x and y into so many equal segments, counter-clockwise, and these segments.
+pub(super) fn boundary_points(
+    width: f64,
+    depth: f64,
+    counts: [usize; 2],
+) -> (Vec<Point2<f64>>, Vec<[usize; 2]>) {
     let (x, y) = (width / 2.0, depth / 2.0);
     let corners = [[-x, -y], [x, -y], [x, y], [-x, y]];
     let mut points = Vec::new();
     for side in 0..4 {
         let ([x0, y0], [x1, y1]) = (corners[side], corners[(side + 1) % 4]);
-        let length = if side % 2 == 0 { width } else { depth };
-        let count = (length / spacing).round().max(1.0) as usize;
+        let count = counts[side % 2];
         for i in 0..count {
             let t = i as f64 / count as f64;
             // Exact on axis-parallel sides: the coordinate that does not change is not computed.
@@ -135,7 +141,7 @@ fn scatter_inside(width: f64, depth: f64, spacing: f64, seed: u64, points: &mut 
 }
 
 /// Vertices and faces ordered in bands along x, so that neighbours in space are near in memory.
-fn in_bands(
+pub(super) fn in_bands(
     triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>,
     band: f64,
 ) -> (Vec<Vec3>, Vec<[u32; 3]>) {
@@ -180,20 +186,6 @@ fn in_bands(
         .collect();
     faces.sort_unstable();
     (positions, faces)
-}
-
-/// Steele, Lea and Flood (2014): small, and the same on every machine.
-struct SplitMix64(u64);
-
-impl SplitMix64 {
-    /// Uniform in [0, 1).
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 * 2f64.powi(-53)
-    }
 }
 
 #[cfg(test)]

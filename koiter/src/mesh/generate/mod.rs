@@ -2,15 +2,20 @@
 //!
 //! Everything is centred at the origin with z as its axis; the one exception is the cone, whose base lies at z = 0.
 
+mod delaunay;
 pub mod face_count;
 mod irregular;
+mod random_sphere;
 mod rectangle;
 mod revolution;
 mod rings;
 mod solids;
+mod split_mix;
 mod vee;
 
+pub use delaunay::delaunay;
 pub use irregular::{IRREGULAR_MIN_ANGLE_DEGREES, irregular};
+pub use random_sphere::random_sphere;
 pub use rectangle::{GridDiagonals, grid};
 pub use revolution::{cone, cylinder, disc, solid_cylinder, spherical_cap, torus};
 pub use solids::{box_mesh, icosphere};

@@ -1,0 +1,210 @@
+//! The elastic energy of a given shape: what `koiter energy` and the benchmarks print.
+//!
+//! One shell without mass, loads and contact, made by the same code as the shells of scenes. Its positions are held, so
+//! only the unknowns that the bending model adds are solved for.
+
+mod directors;
+pub mod shapes;
+
+pub use directors::{Directors, natural_directors};
+
+use std::ops::Range;
+
+use super::assemble::{BuildError, Unknowns, write_points};
+use super::elastic::Elastic;
+use super::model::{
+    BendingModel, Composition, ContactOptions, IntegratorKind, Model, Shell, SolverOptions,
+};
+use crate::Vec3;
+use crate::assembly::Energy;
+use crate::integrate::relax_directors;
+use crate::mesh::Surface;
+use crate::rest::RestError;
+
+/// A shape with its rest shape and what it is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Measurement<'a> {
+    /// The shape whose energy is asked for.
+    pub deformed: &'a Surface,
+    /// Rest positions of its vertices [m]: they give the rest metric.
+    pub rest_positions: &'a [Vec3],
+    /// Whether the rest curvature is that of the rest positions (else zero: rest flat).
+    pub rest_curved: bool,
+    /// Bending model.
+    pub model: BendingModel,
+    /// Thickness [m].
+    pub thickness: f64,
+    /// Young's modulus [Pa].
+    pub youngs_modulus: f64,
+    /// Poisson's ratio.
+    pub poissons_ratio: f64,
+}
+
+/// Energies of a shape.
+#[derive(Clone, Debug, Default)]
+pub struct Measured {
+    /// Membrane energy [J].
+    pub membrane: f64,
+    /// Bending energy [J]; 0 without a bending model.
+    pub bending: f64,
+    /// The directors: the unknowns that the model adds, node by node; empty for models of positions alone.
+    pub directors: Vec<f64>,
+}
+
+/// First derivatives of the energies of a shape.
+#[derive(Clone, Debug, Default)]
+pub struct MeasuredGradient {
+    /// Of the membrane energy by the positions [N], one a vertex.
+    pub membrane: Vec<Vec3>,
+    /// Of the bending energy by the positions [N], one a vertex.
+    pub bending: Vec<Vec3>,
+    /// Of the bending energy by the directors, in their order.
+    pub directors: Vec<f64>,
+}
+
+/// A shape ready to be evaluated: its energies, and the unknowns at which they are taken.
+pub struct MeasuredShape {
+    membrane: Box<dyn Energy>,
+    bending: Option<Box<dyn Energy>>,
+    q: Vec<f64>,
+    vertices: Range<usize>,
+    directors: Range<usize>,
+}
+
+impl Measurement<'_> {
+    /// Finds the rest directors, which always minimise the bending energy of the rest shape, and those of the deformed
+    /// shape as `directors` says.
+    ///
+    /// # Errors
+    /// A rest face without area, directors that do not converge.
+    ///
+    /// # Panics
+    /// If rest positions or given directors are not as many as the mesh and the model have.
+    pub fn prepare(&self, directors: &Directors) -> Result<MeasuredShape, RestError> {
+        let mesh = &self.deformed.mesh;
+        assert_eq!(self.rest_positions.len(), mesh.num_vertices());
+        // The shell starts in its rest shape: what it takes to build it is then what its rest state takes, whatever
+        // is asked of the deformed one.
+        let model = self.at_rest();
+        let unknowns = Unknowns::with_held_vertices(&model);
+        let (mut q, _) = unknowns.start(&model);
+        let elastic = Elastic::new(&model, &unknowns, &mut q).map_err(|error| match error {
+            BuildError::Rest { error, .. } => error,
+            other => unreachable!("a single shell without contact: {other}"),
+        })?;
+        let mut energies = elastic.energies.into_iter();
+        let part = &elastic.parts[0];
+        let (range, first_vertex) = (part.extra_dofs(), part.first_vertex);
+        let membrane = energies.next().expect("every shell has a membrane");
+        let mut bending = energies.next();
+        write_points(&mut q, first_vertex, &self.deformed.positions);
+        let is_at_rest = self.deformed.positions == self.rest_positions;
+        match directors {
+            Directors::Zero => q[range.clone()].copy_from_slice(&natural_directors(
+                self.model.info().unknowns,
+                self.deformed,
+            )),
+            Directors::Given(values) => q[range.clone()].copy_from_slice(values),
+            Directors::Minimise if is_at_rest || range.is_empty() => {}
+            Directors::Minimise => {
+                let start = natural_directors(self.model.info().unknowns, self.deformed);
+                q[range.clone()].copy_from_slice(&start);
+                let energy = bending.as_mut().expect("models with directors bend");
+                relax_directors(energy.as_mut(), &unknowns.layout, range.clone(), &mut q)?;
+            }
+        }
+        Ok(MeasuredShape {
+            membrane,
+            bending,
+            q,
+            vertices: part.vertex_dofs(),
+            directors: range,
+        })
+    }
+
+    /// The energies at the directors of least bending energy.
+    ///
+    /// # Errors
+    /// As [`Measurement::prepare`].
+    pub fn energies(&self) -> Result<Measured, RestError> {
+        Ok(self.prepare(&Directors::Minimise)?.energies())
+    }
+
+    /// A model of one shell in its rest shape, without anything else.
+    fn at_rest(&self) -> Model {
+        let shell = Shell {
+            name: "shape".into(),
+            surface: Surface {
+                mesh: self.deformed.mesh.clone(),
+                positions: self.rest_positions.to_vec(),
+            },
+            velocities: vec![Vec3::zeros(); self.rest_positions.len()],
+            rest_positions: self.rest_positions.to_vec(),
+            rest_curved: self.rest_curved,
+            thickness: self.thickness,
+            density: 0.0,
+            youngs_modulus: self.youngs_modulus,
+            poissons_ratio: self.poissons_ratio,
+            composition: Composition::default(),
+            bending: self.model,
+            friction: 0.0,
+            contact_offset: 0.0,
+        };
+        Model {
+            shells: vec![shell],
+            obstacles: Vec::new(),
+            constraints: Vec::new(),
+            gravity: Vec3::zeros(),
+            gravity_scale: None,
+            contact: ContactOptions {
+                enabled: false,
+                ..ContactOptions::default()
+            },
+            solver: SolverOptions::default(),
+            integrator: IntegratorKind::QuasiStatic,
+        }
+    }
+}
+
+impl MeasuredShape {
+    /// The energies.
+    pub fn energies(&self) -> Measured {
+        Measured {
+            membrane: self.membrane.value(&self.q),
+            bending: self
+                .bending
+                .as_ref()
+                .map_or(0.0, |energy| energy.value(&self.q)),
+            directors: self.q[self.directors.clone()].to_vec(),
+        }
+    }
+
+    /// Whether the bending energy is defined here: that of BAC is not where a director is tilted by π/2.
+    pub fn is_admissible(&self) -> bool {
+        self.bending
+            .as_ref()
+            .is_none_or(|energy| energy.is_admissible(&self.q))
+    }
+
+    /// The gradients.
+    pub fn gradient(&self) -> MeasuredGradient {
+        let points = |gradient: &[f64]| -> Vec<Vec3> {
+            let components = gradient[self.vertices.clone()].chunks_exact(3);
+            components.map(Vec3::from_column_slice).collect()
+        };
+        let mut membrane = vec![0.0; self.q.len()];
+        self.membrane.add_gradient(&self.q, &mut membrane);
+        let mut bending = vec![0.0; self.q.len()];
+        if let Some(energy) = &self.bending {
+            energy.add_gradient(&self.q, &mut bending);
+        }
+        MeasuredGradient {
+            membrane: points(&membrane),
+            bending: points(&bending),
+            directors: bending[self.directors.clone()].to_vec(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
