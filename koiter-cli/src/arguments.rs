@@ -1,9 +1,15 @@
 //! What can be typed.
 
 mod aids;
+mod studies;
 
 pub(crate) use aids::{
     CatalogueArguments, CompletionsArguments, ManArguments, NewArguments, PlotArguments, Template,
+};
+
+pub(crate) use studies::{
+    ConvergenceArguments, CreasedVeeArguments, DirectorSource, EnergyArguments, RestCurvature,
+    bending_models,
 };
 
 use std::path::PathBuf;
@@ -62,7 +68,9 @@ and others) complete its keys and mark mistakes.")]
     Completions(CompletionsArguments),
     /// Prints or writes manual pages.
     Man(ManArguments),
-    /// Measures what things cost on this machine.
+    /// Prints the membrane and bending energies of a mesh under any model.
+    Energy(EnergyArguments),
+    /// Measures what things cost on this machine, and how models compare.
     Bench(BenchArguments),
 }
 
@@ -252,6 +260,8 @@ Examples:
   koiter bench solve --faces 40000 --repeats 5
   koiter bench contact --json
   koiter bench drape --n 35,70 --bending bac --threads 1
+  koiter bench convergence --cases sphere --plot pictures
+  koiter bench creased-vee --json
   koiter bench lateral-buckling --models bac --cells 50 --plot pictures")]
 pub(crate) struct BenchArguments {
     #[command(subcommand)]
@@ -271,6 +281,10 @@ pub(crate) enum BenchSubject {
     Contact(SizeArguments),
     /// Whole steps of the scene drape-n
     Drape(DrapeArguments),
+    /// Bending energies of known shapes under refinement: "Better Bending", Table 4 and Figures 3 to 12
+    Convergence(ConvergenceArguments),
+    /// Bending energies of an unresolved crease: "Better Bending", Table 5, Figures 13 and 14
+    CreasedVee(CreasedVeeArguments),
     /// When a heavy plate that stands on edge buckles sideways: "Better Bending", Figure 26
     LateralBuckling(LateralBucklingArguments),
 }

@@ -9,6 +9,7 @@ mod bench;
 mod catalogue;
 mod check;
 mod debug_mesh;
+mod energy;
 mod export;
 mod failure;
 mod interrupt;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         Verb::Schema => catalogue::schema(),
         Verb::Completions(arguments) => manual::completions(&arguments),
         Verb::Man(arguments) => manual::man(&arguments),
+        Verb::Energy(arguments) => energy::energy(&arguments),
         Verb::Bench(arguments) => bench::bench(&arguments),
     };
     match result {

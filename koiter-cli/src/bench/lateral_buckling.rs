@@ -259,6 +259,7 @@ fn plot_curves(
             .map(|study| Series {
                 name: study.bending.clone(),
                 points: study.curve_with_onset(),
+                ..Series::default()
             })
             .collect();
         let height = (series.iter().flat_map(|s| &s.points))
@@ -268,6 +269,7 @@ fn plot_curves(
         series.push(Series {
             name: "master curve".into(),
             points: vec![[critical, 0.0], [critical, height]],
+            ..Series::default()
         });
         Panel {
             name: format!("lateral displacement, w/L = {width}"),
@@ -284,6 +286,7 @@ fn plot_curves(
         x_label: "load Γ*".into(),
         x_range: (0.0, largest),
         panels: panels.collect(),
+        ..Chart::default()
     };
     for name in ["lateral-buckling.svg", "lateral-buckling.png"] {
         plot::write(&chart, (1000, 1100), &folder.join(name))?;

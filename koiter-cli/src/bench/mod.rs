@@ -1,11 +1,15 @@
-//! `koiter bench`: what things cost on this machine.
+//! `koiter bench`: what things cost on this machine, and how models compare.
 //!
-//! Every figure is the fastest of a few repetitions: machines are noisy, and noise only adds.
+//! Every time is the fastest of a few repetitions: machines are noisy, and noise only adds.
 
 mod assembly;
 mod contact;
+mod convergence;
+mod creased_vee;
 mod drape;
 mod lateral_buckling;
+mod model_style;
+mod published;
 mod sheet;
 mod solve;
 mod table;
@@ -23,6 +27,12 @@ pub(crate) fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         BenchSubject::Solve(options) => solve::bench(options),
         BenchSubject::Contact(options) => contact::bench(options),
         BenchSubject::Drape(options) => drape::bench(options),
+        BenchSubject::Convergence(options) => {
+            return convergence::bench(options, arguments.json);
+        }
+        BenchSubject::CreasedVee(options) => {
+            return creased_vee::bench(options, arguments.json);
+        }
         BenchSubject::LateralBuckling(options) => lateral_buckling::bench(options),
     }?;
     if arguments.json {

@@ -4,9 +4,11 @@
 //! only the unknowns that the bending model adds are solved for.
 
 mod directors;
+mod refinement;
 pub mod shapes;
 
 pub use directors::{Directors, natural_directors};
+pub use refinement::Refinement;
 
 use std::ops::Range;
 
