@@ -18,6 +18,6 @@ pub use newton::{
     HessianChoice, NewtonOptions, NewtonReport, Problem, SolveError, minimize, minimize_stably,
 };
 pub use ordering::{EliminationOrder, NodeOrdering, nested_dissection};
-pub use saddle::leave_saddle;
+pub use saddle::{leave_saddle, leave_saddles_by_node};
 pub use supernodal::Supernodal;
 pub use workspace::{LinearWorkspace, WorkspaceHistory};

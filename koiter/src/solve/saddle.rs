@@ -6,9 +6,11 @@
 //! `H + S` definite, turns any vector towards the direction v of most negative curvature, and the point is moved along v
 //! as long as the energy falls.
 
+use nalgebra::DMatrix;
+
 use super::newton::{NewtonReport, Problem, SolveError, not_finite};
 use super::workspace::LinearWorkspace;
-use crate::assembly::{HessianBuilder, PsdProjection};
+use crate::assembly::{HessianBuilder, NodeId, PsdProjection};
 
 /// Inverse iterations before the curvature counts as zero up to round-off. Each turns the vector towards v by the ratio
 /// of shifted eigenvalues; 3 to 10 were enough for buckling plates and for directors on creases.
@@ -38,6 +40,61 @@ pub fn leave_saddle(
     let direction = negative_direction(problem, workspace, &gradient);
     report.spend("stability", start);
     Ok(direction.is_some_and(|direction| descend(problem, tolerance, &direction, q)))
+}
+
+/// Moves every node whose own block of the exact Hessian has negative curvature off along it, by `way` and to either side
+/// at random (always the same way); whether there was one.
+///
+/// Where many nodes stand on saddles of their own, as the directors along a crease do, [`leave_saddle`] would leave them
+/// one after the other.
+///
+/// # Errors
+/// [`SolveError::NotFinite`].
+pub fn leave_saddles_by_node(
+    problem: &mut Problem<'_>,
+    workspace: &mut LinearWorkspace,
+    way: f64,
+    q: &mut [f64],
+) -> Result<bool, SolveError> {
+    for energy in &mut problem.energies {
+        energy.begin_iteration(q);
+    }
+    workspace.update_pattern(&mut problem.energies, problem.layout, q);
+    assemble_exact(problem, workspace, q)?;
+    let matrix = workspace.matrix.as_ref().expect("the matrix was assembled");
+    let mut direction = vec![0.0; q.len()];
+    let mut count = 0;
+    for node in (0..problem.layout.num_solved_nodes() as u32).map(NodeId) {
+        let (start, size) = (problem.layout.start(node), problem.layout.size(node));
+        let slot = matrix
+            .pattern
+            .slot(node, node)
+            .expect("diagonal blocks are stored") as usize;
+        let length = matrix.pattern.first_column_length(node) as usize;
+        let block = DMatrix::from_fn(size, size, |i, j| {
+            let (row, column) = (i.max(j), i.min(j));
+            matrix.values[slot + column * length - column * (column + 1) / 2 + row]
+        });
+        let eigen = block.symmetric_eigen();
+        let least = eigen.eigenvalues.imin();
+        if eigen.eigenvalues[least] < 0.0 {
+            count += 1;
+            // Steele, Lea and Flood (2014), one bit of it.
+            let mixed = (count as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let side = if mixed >> 63 == 0 { way } else { -way };
+            for (k, v) in eigen.eigenvectors.column(least).iter().enumerate() {
+                direction[start + k] = side * v;
+            }
+        }
+    }
+    let mut trial = vec![0.0; q.len()];
+    problem.space.retract(q, &direction, &mut trial);
+    let is_admissible = problem.energies.iter().all(|e| e.is_admissible(&trial));
+    if count > 0 && is_admissible {
+        q.copy_from_slice(&trial);
+    }
+    Ok(count > 0 && is_admissible)
 }
 
 /// The exact Hessian into the workspace, with the rows of held unknowns taken out; returns the gradient.

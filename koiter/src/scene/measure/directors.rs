@@ -1,7 +1,7 @@
 //! Where the directors of a measured shape come from.
 
 use crate::Vec3;
-use crate::energy::bending::ExtraUnknowns;
+use crate::energy::bending::{ExtraUnknowns, vertex_normals};
 use crate::mesh::Surface;
 
 /// How the unknowns that a bending model adds are found.
@@ -30,17 +30,4 @@ pub fn natural_directors(unknowns: ExtraUnknowns, surface: &Surface) -> Vec<f64>
         }
     };
     points.iter().flat_map(|x| [x.x, x.y, x.z]).collect()
-}
-
-/// Unit vectors along the sum of the area-weighted normals of the faces around every vertex.
-fn vertex_normals(surface: &Surface) -> Vec<Vec3> {
-    let mut sums = vec![Vec3::zeros(); surface.mesh.num_vertices()];
-    for (f, face) in surface.mesh.faces().iter().enumerate() {
-        let [a, b, c] = surface.corners(f);
-        let normal = (b - a).cross(&(c - a));
-        face.iter().for_each(|&v| sums[v as usize] += normal);
-    }
-    // Where normals cancel (a cone folded flat) any direction is as good.
-    let direction = |sum: Vec3| sum.try_normalize(0.0).unwrap_or_else(Vec3::z);
-    sums.into_iter().map(direction).collect()
 }

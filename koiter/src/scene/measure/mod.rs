@@ -158,6 +158,7 @@ impl Measurement<'_> {
             constraints: Vec::new(),
             gravity: Vec3::zeros(),
             gravity_scale: None,
+            loads: Vec::new(),
             contact: ContactOptions {
                 enabled: false,
                 ..ContactOptions::default()
