@@ -8,7 +8,8 @@ use program::{koiter, status, stderr, stdout};
 use serde_json::Value;
 
 /// A square of four triangles about a raised middle.
-const TENT: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0.2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+const TENT: &str =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0.2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
 const SHELL: [&str; 6] = ["--thickness", "1e-3", "--young", "1e9", "--poisson", "0.3"];
 
 struct Folder(tempfile::TempDir);
@@ -30,7 +31,12 @@ fn display(path: &Path) -> String {
 }
 
 fn json(arguments: &[&str]) -> Value {
-    let all: Vec<&str> = ["energy"].iter().chain(arguments).chain(&SHELL).copied().collect();
+    let all: Vec<&str> = ["energy"]
+        .iter()
+        .chain(arguments)
+        .chain(&SHELL)
+        .copied()
+        .collect();
     let output = koiter(&[&all[..], &["--json"]].concat());
     assert_eq!(status(&output), 0, "{}", stderr(&output));
     serde_json::from_str(&stdout(&output)).unwrap()
@@ -46,7 +52,10 @@ fn refused(arguments: &[&str]) -> String {
 #[test]
 fn directors_that_were_printed_give_the_same_energy_when_read() {
     let folder = Folder::new();
-    let (tent, flat) = (folder.write("tent.obj", TENT), folder.write("flat.obj", &TENT.replace("0.2", "0")));
+    let (tent, flat) = (
+        folder.write("tent.obj", TENT),
+        folder.write("flat.obj", &TENT.replace("0.2", "0")),
+    );
     let meshes = ["--deformed", &tent, "--rest", &flat];
     let all = json(&[&meshes[..], &["--gradient"]].concat());
     assert!(all["membrane"]["stvk"]["energy"].as_f64().unwrap() > 0.0);
@@ -64,7 +73,10 @@ fn directors_that_were_printed_give_the_same_energy_when_read() {
         let again = json(&[&meshes[..], &["--model", name, "--directors", &file]].concat());
         assert_eq!(again["bending"][name]["energy"], entry["energy"], "{name}");
         let zero = json(&[&meshes[..], &["--model", name, "--directors", "zero"]].concat());
-        assert!(zero["bending"][name]["energy"].as_f64() > entry["energy"].as_f64(), "{name}");
+        assert!(
+            zero["bending"][name]["energy"].as_f64() > entry["energy"].as_f64(),
+            "{name}"
+        );
     }
 }
 
@@ -76,9 +88,19 @@ fn without_a_rest_shape_the_mesh_is_flat_in_its_own_metric() {
     // Round-off of strains: 1e-16 squared, times E h A.
     assert!(alone["membrane"]["stvk"]["energy"].as_f64().unwrap() < 1e-20);
     assert!(alone["bending"]["bac"]["energy"].as_f64().unwrap() > 1e-3);
-    let curved = json(&["--deformed", &tent, "--model", "bac,ds-theta", "--rest-curvature", "mesh"]);
+    let curved = json(&[
+        "--deformed",
+        &tent,
+        "--model",
+        "bac,ds-theta",
+        "--rest-curvature",
+        "mesh",
+    ]);
     for name in ["bac", "ds-theta"] {
-        assert!(curved["bending"][name]["energy"].as_f64().unwrap() < 1e-15, "{curved}");
+        assert!(
+            curved["bending"][name]["energy"].as_f64().unwrap() < 1e-15,
+            "{curved}"
+        );
     }
     let table = koiter(&[&["energy", "--deformed", &tent][..], &SHELL].concat());
     assert!(stdout(&table).contains("membrane") && stdout(&table).contains("ds-theta"));
@@ -90,12 +112,24 @@ fn meshes_that_are_not_the_same_are_refused_with_the_first_difference() {
     let tent = folder.write("tent.obj", TENT);
     let refuse = |text: &str| {
         let rest = folder.write("rest.obj", text);
-        refused(&[&["energy", "--deformed", &tent, "--rest", &rest][..], &SHELL].concat())
+        refused(
+            &[
+                &["energy", "--deformed", &tent, "--rest", &rest][..],
+                &SHELL,
+            ]
+            .concat(),
+        )
     };
     let turned = refuse(&TENT.replace("f 2 3 5", "f 3 5 2"));
-    assert!(turned.contains("face 1") && turned.contains("[1, 2, 4]") && turned.contains("[2, 4, 1]"), "{turned}");
+    assert!(
+        turned.contains("face 1") && turned.contains("[1, 2, 4]") && turned.contains("[2, 4, 1]"),
+        "{turned}"
+    );
     let fewer = refuse("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
-    assert!(fewer.contains("5 vertices") && fewer.contains("has 3"), "{fewer}");
+    assert!(
+        fewer.contains("5 vertices") && fewer.contains("has 3"),
+        "{fewer}"
+    );
     let missing = refused(&[&["energy", "--deformed", "nowhere.obj"][..], &SHELL].concat());
     assert!(missing.contains("nowhere.obj"), "{missing}");
 }
@@ -106,28 +140,60 @@ fn bad_directors_are_refused_with_their_place() {
     let tent = folder.write("tent.obj", TENT);
     let refuse = |text: &str, model: &str| {
         let file = folder.write("d.json", text);
-        let arguments = ["energy", "--deformed", &tent, "--model", model, "--directors", &file];
+        let arguments = [
+            "energy",
+            "--deformed",
+            &tent,
+            "--model",
+            model,
+            "--directors",
+            &file,
+        ];
         refused(&[&arguments[..], &SHELL].concat())
     };
     for (text, said) in [
         ("{", "no file of directors"),
         (r#"{"angles": []}"#, "angles"),
         (r#"{"edge_angles": [0.1]}"#, "no edges"),
-        (r#"{"edges": [[0, 1]], "edge_angles": []}"#, "directors for 0"),
-        (r#"{"edges": [[0, 2]], "edge_angles": [0.1]}"#, "[0, 2] is no edge"),
-        (r#"{"edges": [[0, 99]], "edge_angles": [0.1]}"#, "[0, 99] is no edge"),
+        (
+            r#"{"edges": [[0, 1]], "edge_angles": []}"#,
+            "directors for 0",
+        ),
+        (
+            r#"{"edges": [[0, 2]], "edge_angles": [0.1]}"#,
+            "[0, 2] is no edge",
+        ),
+        (
+            r#"{"edges": [[0, 99]], "edge_angles": [0.1]}"#,
+            "[0, 99] is no edge",
+        ),
         (r#"{"edges": [[1, 0]], "edge_angles": [0.1]}"#, "u < v"),
-        (r#"{"edges": [[0, 1], [0, 1]], "edge_angles": [0.1, 0.1]}"#, "twice"),
+        (
+            r#"{"edges": [[0, 1], [0, 1]], "edge_angles": [0.1, 0.1]}"#,
+            "twice",
+        ),
         (r#"{"edges": [[0, 1]], "edge_angles": [0.1]}"#, "is missing"),
         (r#"{"vertex_directors": [[0, 0, 1]]}"#, "no edge_angles"),
     ] {
         let message = refuse(text, "bac");
-        assert!(message.contains(said) && message.contains("d.json"), "{text}: {message}");
+        assert!(
+            message.contains(said) && message.contains("d.json"),
+            "{text}: {message}"
+        );
     }
     let short = refuse(r#"{"vertex_directors": [[0, 0, 1]]}"#, "dkt");
-    assert!(short.contains("1 vertex directors") && short.contains("5 vertices"), "{short}");
-    let long = refuse(r#"{"vertex_directors": [[0,0,2],[0,0,1],[0,0,1],[0,0,1],[0,0,1]]}"#, "dkt");
-    assert!(long.contains("vertex 0") && long.contains("length 2"), "{long}");
+    assert!(
+        short.contains("1 vertex directors") && short.contains("5 vertices"),
+        "{short}"
+    );
+    let long = refuse(
+        r#"{"vertex_directors": [[0,0,2],[0,0,1],[0,0,1],[0,0,1],[0,0,1]]}"#,
+        "dkt",
+    );
+    assert!(
+        long.contains("vertex 0") && long.contains("length 2"),
+        "{long}"
+    );
 }
 
 #[test]
@@ -135,7 +201,19 @@ fn numbers_and_names_out_of_range_are_refused() {
     let folder = Folder::new();
     let tent = folder.write("tent.obj", TENT);
     let with = |thickness: &str, poisson: &str, model: &str| {
-        refused(&["energy", "--deformed", &tent, "--thickness", thickness, "--young", "1e9", "--poisson", poisson, "--model", model])
+        refused(&[
+            "energy",
+            "--deformed",
+            &tent,
+            "--thickness",
+            thickness,
+            "--young",
+            "1e9",
+            "--poisson",
+            poisson,
+            "--model",
+            model,
+        ])
     };
     assert!(with("0", "0.3", "bac").contains("above 0"));
     assert!(with("nan", "0.3", "bac").contains("above 0"));
@@ -146,7 +224,15 @@ fn numbers_and_names_out_of_range_are_refused() {
 
 #[test]
 fn the_benchmarks_print_their_cells() {
-    let output = koiter(&["bench", "convergence", "--levels", "7,6", "--cases", "cylinder-irregular", "--json"]);
+    let output = koiter(&[
+        "bench",
+        "convergence",
+        "--levels",
+        "7,6",
+        "--cases",
+        "cylinder-irregular",
+        "--json",
+    ]);
     assert_eq!(status(&output), 0, "{}", stderr(&output));
     let study: Value = serde_json::from_str(&stdout(&output)).unwrap();
     let refinements = study["refinements"].as_array().unwrap();
@@ -158,14 +244,28 @@ fn the_benchmarks_print_their_cells() {
         assert!(!is_right || rate < -0.25, "{entry}");
     }
     for cell in study["cells"].as_array().unwrap() {
-        let (energy, exact) = (cell["energy"].as_f64().unwrap(), cell["exact"].as_f64().unwrap());
+        let (energy, exact) = (
+            cell["energy"].as_f64().unwrap(),
+            cell["exact"].as_f64().unwrap(),
+        );
         // (α/2 + β) π h³ H / (12 R) with h = 1e-4, E = 100 GPa, ν = 0.3, H = 0.122, R = 0.0325.
         assert!((exact - 5.4e-2).abs() < 5e-5 && energy > 0.0, "{cell}");
     }
     let folder = Folder::new();
     let pictures = display(folder.0.path());
-    let output = koiter(&["bench", "creased-vee", "--level", "5", "--models", "bac,ds-tan", "--plot", &pictures]);
+    let output = koiter(&[
+        "bench",
+        "creased-vee",
+        "--level",
+        "5",
+        "--models",
+        "bac,ds-tan",
+        "--plot",
+        &pictures,
+    ]);
     assert_eq!(status(&output), 0, "{}", stderr(&output));
     assert!(folder.0.path().join("creased-vee-log.png").is_file());
-    assert!(refused(&["bench", "convergence", "--cases", "cone"]).contains("there is no case cone"));
+    assert!(
+        refused(&["bench", "convergence", "--cases", "cone"]).contains("there is no case cone")
+    );
 }

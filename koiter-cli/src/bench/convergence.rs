@@ -102,7 +102,7 @@ impl Study {
                 say_error!("{} level {level} {}", shape.name(), model.info().name);
             }
             let start = Instant::now();
-            let energy = bending_energy(&surface, model)?;
+            let energy = bending_energy(&surface, model);
             self.cells.push(Cell {
                 shape,
                 model,
@@ -177,8 +177,9 @@ fn lame() -> [f64; 2] {
     [young * nu / (1.0 - nu * nu), young / (2.0 * (1.0 + nu))]
 }
 
-/// The bending energy of a known surface of the study's material, with directors of least energy.
-pub(super) fn bending_energy(surface: &KnownSurface, model: BendingModel) -> Result<f64, Failure> {
+/// The bending energy of a known surface of the study's material, with directors of least energy. Where they are not found
+/// it says so and the energy is NaN: the other cells are worth having.
+pub(super) fn bending_energy(surface: &KnownSurface, model: BendingModel) -> f64 {
     let measurement = Measurement {
         deformed: &surface.deformed,
         rest_positions: &surface.rest_positions,
@@ -188,10 +189,13 @@ pub(super) fn bending_energy(surface: &KnownSurface, model: BendingModel) -> Res
         youngs_modulus: YOUNGS_MODULUS,
         poissons_ratio: POISSONS_RATIO,
     };
-    let measured = measurement.energies();
-    let energies =
-        measured.map_err(|error| Failure::run(format!("{}: {error}", model.info().name)))?;
-    Ok(energies.bending)
+    match measurement.energies() {
+        Ok(energies) => energies.bending,
+        Err(error) => {
+            say_error!("warning: {}: {error}", model.info().name);
+            f64::NAN
+        }
+    }
 }
 
 fn known_shapes(names: &[String]) -> Result<Vec<KnownShape>, Failure> {

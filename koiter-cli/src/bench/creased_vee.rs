@@ -79,7 +79,7 @@ pub(super) fn bench(options: &CreasedVeeArguments, as_json: bool) -> Result<(), 
             cells.push(Cell {
                 angle,
                 model,
-                energy: bending_energy(&surface, model)?,
+                energy: bending_energy(&surface, model),
                 seconds: clock.elapsed().as_secs_f64(),
             });
         }
@@ -136,7 +136,7 @@ fn text(cells: &[Cell], models: &[BendingModel], vertices: usize) -> String {
             let entry = match Published::of(angle, model) {
                 Some(p) => {
                     let mark = if p.holds(cell.energy) { "✓" } else { "✗" };
-                    format!("{:.4}{mark} {:>7}", short(cell.energy), short(p.energy))
+                    format!("{}{mark} {:>7}", short(cell.energy), short(p.energy))
                 }
                 None => short(cell.energy),
             };

@@ -113,9 +113,8 @@ const MAX_ROUNDS: usize = 8;
 /// A fall of the energy in a whole round that counts as none, relative.
 const NO_FALL: f64 = 1e-9;
 
-/// How far directors are turned off the saddles they stand on [rad]: about half of the way to their minima, which lie at
-/// right angles.
-const OFF_SADDLE: f64 = 1.0;
+/// How far directors are turned off the saddles they stand on [rad]: on sharp creases minima lie near right angles.
+const OFF_SADDLE: f64 = std::f64::consts::FRAC_PI_2;
 
 /// Directors that stand on saddles are turned off them, all at once.
 fn find_directors(problem: &mut Problem<'_>, q: &mut [f64]) -> Result<(), String> {
@@ -137,6 +136,10 @@ fn find_directors(problem: &mut Problem<'_>, q: &mut [f64]) -> Result<(), String
     }
     let (saddle, at_saddle) = (q.to_vec(), energy(problem, q));
     leave_saddles_by_node(problem, &mut workspace, OFF_SADDLE, q).map_err(in_words)?;
+    let options = NewtonOptions {
+        hessian: HessianChoice::ExactShifted,
+        ..options
+    };
     let mut before = f64::INFINITY;
     for _ in 0..MAX_ROUNDS {
         let report = minimize_stably(problem, &options, &mut workspace, q).map_err(in_words)?;

@@ -46,6 +46,9 @@ pub enum HessianChoice {
     Projected,
     /// Exact from the first iteration on, projected where the exact Hessian is not positive definite.
     ExactWhereConvex,
+    /// Exact, with a multiple of its diagonal added where it is not positive definite: for problems of many small saddles,
+    /// whose elements are too stiff when projected.
+    ExactShifted,
 }
 
 /// What happened.
@@ -287,18 +290,20 @@ fn factorized_system(
             report,
         )?;
         let start = Instant::now();
-        let factorized = if projection == PsdProjection::Clamp {
-            (workspace.factorize_shifted(problem.is_fixed)).map(|n| report.shifts += n)
+        let may_shift = projection == PsdProjection::Clamp || pace.may_shift();
+        let factorized = if may_shift {
+            workspace.factorize_shifted(problem.is_fixed)
         } else {
-            workspace.factorize()
+            workspace.factorize().map(|()| 0)
         };
         report.spend("linear_solve", start);
         match factorized {
-            Ok(()) => {
-                report.ends_definite = projection == PsdProjection::Exact;
+            Ok(shifts) => {
+                report.shifts += shifts;
+                report.ends_definite = projection == PsdProjection::Exact && shifts == 0;
                 return Ok((gradient, rhs));
             }
-            Err(dof) if projection == PsdProjection::Clamp => {
+            Err(dof) if may_shift => {
                 return Err(SolveError::Indefinite {
                     unknown: problem.space.describe(dof),
                 });

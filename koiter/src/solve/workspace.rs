@@ -31,7 +31,7 @@ pub struct LinearWorkspace {
 }
 
 /// Shifts to try, relative to the diagonal, when a factorisation fails.
-const SHIFTS: [f64; 6] = [1e-8, 1e-6, 1e-4, 1e-2, 1.0, 1e2];
+const SHIFTS: [f64; 7] = [1e-8, 1e-6, 1e-4, 1e-2, 1.0, 4.0, 1e2];
 
 /// Contacts make the factor fuller than the order was made for; beyond this ratio a new order pays.
 const REORDER_GROWTH: f64 = 1.5;

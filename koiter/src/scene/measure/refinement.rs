@@ -7,6 +7,8 @@ pub struct Refinement {
     pub rate: f64,
     /// Error of the finest mesh.
     pub error: f64,
+    /// Whether it is smaller than that of the mesh before.
+    pub still_falls: bool,
 }
 
 /// An error falls by a power law if it falls at least this fast in V; errors of first order in the edge length have −0.5.
@@ -39,12 +41,13 @@ impl Refinement {
                 across / along
             },
             error: errors.last().map_or(f64::NAN, |(_, error)| *error),
+            still_falls: matches!(errors, [.., (_, before), (_, last)] if last < before),
         }
     }
 
     /// Whether there is a pattern of an error that goes to zero.
     pub fn converges(&self) -> bool {
-        self.rate < SLOWEST_RATE && self.error < LARGEST_ERROR
+        self.rate < SLOWEST_RATE && self.still_falls && self.error < LARGEST_ERROR
     }
 }
 
