@@ -103,7 +103,9 @@ fn find_points(problem: &mut Problem<'_>, q: &mut [f64]) -> Result<(), String> {
         return Ok(());
     }
     let (step, count) = (report.last_step, report.iterations);
-    Err(format!("the last step was {step:.1e} after {count} iterations"))
+    Err(format!(
+        "the last step was {step:.1e} after {count} iterations"
+    ))
 }
 
 /// Iterations after which it is looked whether the energy still falls, and how often.

@@ -19,7 +19,8 @@ use super::model::{
 };
 use crate::Vec3;
 use crate::assembly::Energy;
-use crate::integrate::relax_directors;
+use crate::energy::bending::ExtraUnknowns;
+use crate::integrate::{relax_directors, relax_edge_points};
 use crate::mesh::Surface;
 use crate::rest::RestError;
 
@@ -112,7 +113,16 @@ impl Measurement<'_> {
                 let start = natural_directors(self.model.info().unknowns, self.deformed);
                 q[range.clone()].copy_from_slice(&start);
                 let energy = bending.as_mut().expect("models with directors bend");
-                relax_directors(energy.as_mut(), &unknowns.layout, range.clone(), &mut q)?;
+                let (layout, range) = (&unknowns.layout, range.clone());
+                if part.extra == ExtraUnknowns::EdgePoints {
+                    let (energies, edge) = (
+                        std::slice::from_mut(energy),
+                        self.deformed.mean_edge_length(),
+                    );
+                    relax_edge_points(energies, layout, range, edge, &mut q)?;
+                } else {
+                    relax_directors(energy.as_mut(), layout, range, &mut q)?;
+                }
             }
         }
         Ok(MeasuredShape {
@@ -159,6 +169,7 @@ impl Measurement<'_> {
             gravity: Vec3::zeros(),
             gravity_scale: None,
             loads: Vec::new(),
+            symmetry_planes: Vec::new(),
             contact: ContactOptions {
                 enabled: false,
                 ..ContactOptions::default()
