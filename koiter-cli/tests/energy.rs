@@ -1,5 +1,6 @@
 //! `koiter energy`: what it prints, and what it refuses.
 
+#[expect(dead_code, reason = "the other tests run scenes, these do not")]
 mod program;
 
 use std::path::{Path, PathBuf};
