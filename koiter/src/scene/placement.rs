@@ -114,12 +114,8 @@ fn make(spec: &MeshSpec, source: &dyn MeshSource) -> Result<Surface, ShapeError>
 
 fn generate(spec: &MeshSpec) -> Result<Surface, GeneratorError> {
     if let Some(g) = &spec.grid {
-        let diagonals = match g.diagonals {
-            Diagonals::Uniform => GridDiagonals::Uniform,
-            Diagonals::Alternating => GridDiagonals::Alternating,
-            Diagonals::Checkerboard => GridDiagonals::Checkerboard,
-        };
-        return generate::grid(g.size[0], g.size[1], g.cells[0], g.cells[1], diagonals);
+        let [nx, ny] = g.cells;
+        return generate::grid(g.size[0], g.size[1], nx, ny, diagonals(g.diagonals));
     }
     if let Some(g) = &spec.irregular {
         return generate::irregular(g.size[0], g.size[1], g.max_area, g.seed);
@@ -143,11 +139,30 @@ fn generate(spec: &MeshSpec) -> Result<Surface, GeneratorError> {
         let hole = g.hole_degrees.map(f64::to_radians);
         return generate::spherical_cap(g.radius, g.degrees.to_radians(), hole, g.rings);
     }
+    if let Some(g) = &spec.panel {
+        let angles = g.degrees.map(f64::to_radians);
+        let diagonals = diagonals(g.diagonals);
+        return generate::cylinder_panel(g.radius, g.length, angles, g.cells, diagonals);
+    }
+    if let Some(g) = &spec.zone {
+        let [longitudes, latitudes] =
+            [g.longitudes, g.latitudes].map(|angles| angles.map(f64::to_radians));
+        let diagonals = diagonals(g.diagonals);
+        return generate::sphere_zone(g.radius, longitudes, latitudes, g.cells, diagonals);
+    }
     if let Some(g) = &spec.vee {
         return generate::vee(g.length, g.width, g.degrees.to_radians(), g.along, g.across);
     }
     // The scene's checks let exactly one shape through.
     Err(GeneratorError::Mesh(MeshError::Empty))
+}
+
+fn diagonals(given: Diagonals) -> GridDiagonals {
+    match given {
+        Diagonals::Uniform => GridDiagonals::Uniform,
+        Diagonals::Alternating => GridDiagonals::Alternating,
+        Diagonals::Checkerboard => GridDiagonals::Checkerboard,
+    }
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ pub use shape::{
 };
 pub use shape::{
     CapSpec, ConeSpec, CylinderSpec, Diagonals, DiscSpec, GridSpec, IcosphereSpec, IrregularSpec,
-    TorusSpec, VeeSpec,
+    PanelSpec, TorusSpec, VeeSpec, ZoneSpec,
 };
 
 pub use symmetry::SymmetrySpec;

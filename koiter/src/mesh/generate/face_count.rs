@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-/// Of [`grid`](super::grid()), [`cylinder`](super::cylinder), [`cone`](super::cone) (at most) and
-/// [`torus`](super::torus): two a cell.
+/// Of [`grid`](super::grid()), [`cylinder`](super::cylinder), [`cone`](super::cone) (at most),
+/// [`torus`](super::torus), [`cylinder_panel`](super::cylinder_panel) and [`sphere_zone`](super::sphere_zone): two a cell.
 pub fn cells(nx: usize, ny: usize) -> f64 {
     2.0 * nx as f64 * ny as f64
 }

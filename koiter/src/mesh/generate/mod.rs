@@ -1,10 +1,12 @@
 //! Surfaces made from numbers: sheets, tubes, cones, balls, boxes. Lengths in metres, normals outward (or up, +z).
 //!
-//! Everything is centred at the origin with z as its axis; the one exception is the cone, whose base lies at z = 0.
+//! Everything is centred at the origin with z as its axis; exceptions are the cone, whose base lies at
+//! z = 0, and patches of cylinders and spheres.
 
 mod delaunay;
 pub mod face_count;
 mod irregular;
+mod patch;
 mod random_sphere;
 mod rectangle;
 mod revolution;
@@ -15,6 +17,7 @@ mod vee;
 
 pub use delaunay::delaunay;
 pub use irregular::{IRREGULAR_MIN_ANGLE_DEGREES, irregular};
+pub use patch::{cylinder_panel, sphere_zone};
 pub use random_sphere::random_sphere;
 pub use rectangle::{GridDiagonals, grid};
 pub use revolution::{cone, cylinder, disc, solid_cylinder, spherical_cap, torus};

@@ -36,6 +36,12 @@ pub struct MeshSpec {
     /// Part of a sphere about the +z pole.
     #[serde(default)]
     pub cap: Option<CapSpec>,
+    /// Four-sided part of a cylinder about the y axis.
+    #[serde(default)]
+    pub panel: Option<PanelSpec>,
+    /// Four-sided part of a sphere.
+    #[serde(default)]
+    pub zone: Option<ZoneSpec>,
     /// Sheet folded along its middle line.
     #[serde(default)]
     pub vee: Option<VeeSpec>,
@@ -79,6 +85,8 @@ impl MeshSpec {
             ("icosphere", self.icosphere.is_some()),
             ("torus", self.torus.is_some()),
             ("cap", self.cap.is_some()),
+            ("panel", self.panel.is_some()),
+            ("zone", self.zone.is_some()),
             ("vee", self.vee.is_some()),
         ]
         .into_iter()
@@ -264,6 +272,40 @@ pub struct CapSpec {
     pub hole_degrees: Option<f64>,
     /// Rings of triangles.
     pub rings: usize,
+}
+
+/// Four-sided part of a cylinder about the y axis, from y = 0.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PanelSpec {
+    /// Radius of the cylinder [m].
+    pub radius: f64,
+    /// Length along y [m].
+    pub length: f64,
+    /// First and last angle from the top, +z, towards +x [°].
+    pub degrees: [f64; 2],
+    /// Cells around and along, each of two triangles.
+    pub cells: [usize; 2],
+    /// Direction of the diagonals.
+    #[serde(default)]
+    pub diagonals: Diagonals,
+}
+
+/// Four-sided part of a sphere, centred at the sphere's centre.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ZoneSpec {
+    /// Radius of the sphere [m].
+    pub radius: f64,
+    /// First and last longitude from +x towards +y [°].
+    pub longitudes: [f64; 2],
+    /// First and last latitude from the equator, north is +z [°].
+    pub latitudes: [f64; 2],
+    /// Cells around and up, each of two triangles.
+    pub cells: [usize; 2],
+    /// Direction of the diagonals.
+    #[serde(default)]
+    pub diagonals: Diagonals,
 }
 
 /// Two rectangles that meet in a crease on the x axis; it opens upwards.
