@@ -2,6 +2,7 @@
 
 mod aids;
 mod studies;
+mod validation;
 
 pub(crate) use aids::{
     CatalogueArguments, CompletionsArguments, ManArguments, NewArguments, PlotArguments, Template,
@@ -11,6 +12,7 @@ pub(crate) use studies::{
     ConvergenceArguments, CreasedVeeArguments, DirectorSource, EnergyArguments, RestCurvature,
     bending_models,
 };
+pub(crate) use validation::ValidateArguments;
 
 use std::path::PathBuf;
 
@@ -70,6 +72,8 @@ and others) complete its keys and mark mistakes.")]
     Man(ManArguments),
     /// Prints the membrane and bending energies of a mesh under any model.
     Energy(EnergyArguments),
+    /// Computes published shell problems and compares.
+    Validate(ValidateArguments),
     /// Measures what things cost on this machine, and how models compare.
     Bench(BenchArguments),
 }

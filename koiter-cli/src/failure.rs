@@ -60,6 +60,14 @@ impl Failure {
         }
     }
 
+    /// What went wrong, in a line.
+    pub(crate) fn message(&self) -> &str {
+        match self {
+            Self::Scene(error) => &error.message,
+            Self::Input { message, .. } | Self::Run { message, .. } => message,
+        }
+    }
+
     /// Prints the failure to standard error.
     pub(crate) fn print(&self) {
         match self {

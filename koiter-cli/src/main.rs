@@ -25,6 +25,7 @@ mod probes;
 mod render;
 mod run;
 mod scene_source;
+mod validate;
 
 use std::process::ExitCode;
 
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
         Verb::Completions(arguments) => manual::completions(&arguments),
         Verb::Man(arguments) => manual::man(&arguments),
         Verb::Energy(arguments) => energy::energy(&arguments),
+        Verb::Validate(arguments) => validate::validate(&arguments),
         Verb::Bench(arguments) => bench::bench(&arguments),
     };
     match result {

@@ -10,6 +10,13 @@ use koiter::scene::Simulation;
 use koiter::scene::{Observable, Probe};
 use serde_json::{Map, Value, json};
 
+/// Columns of the probes with their values.
+pub(crate) fn values_by_column(probes: &[Probe], simulation: &Simulation) -> Vec<(String, f64)> {
+    let state = State(simulation);
+    let of_probe = |probe: &Probe| probe.columns().into_iter().zip(probe.measure(&state));
+    probes.iter().flat_map(of_probe).collect()
+}
+
 /// Writes the probes of a scene.
 pub(crate) struct ProbeWriter<'a> {
     probes: &'a [Probe],

@@ -1,0 +1,55 @@
+//! Load over displacement, ours and the published ones.
+
+use std::path::Path;
+
+use koiter_render::{Chart, Panel, Series, Style};
+
+use super::case::Case;
+use super::study::Study;
+use crate::failure::Failure;
+use crate::plot;
+
+/// Draws a case that has paths, a panel a quantity; other cases have nothing to draw.
+pub(super) fn draw(case: &Case, studies: &[Study], folder: &Path) -> Result<(), Failure> {
+    let Some(first) = studies.first() else {
+        return Ok(());
+    };
+    let mut panels = Vec::new();
+    let mut last = 0.0f64;
+    for (k, finding) in first.findings.iter().enumerate() {
+        if finding.curve.is_empty() {
+            return Ok(());
+        }
+        let mut series = vec![Series {
+            name: "published".into(),
+            points: finding.quantity.curve.clone(),
+            ..Series::default()
+        }];
+        series.extend(studies.iter().map(|study| Series {
+            name: study.model.clone(),
+            points: study.findings[k].curve.clone(),
+            ..Series::default()
+        }));
+        last = (finding.quantity.curve.iter()).fold(last, |last, point| last.max(point[0]));
+        panels.push(Panel {
+            name: finding.quantity.name.replace('_', " "),
+            unit: "".into(),
+            style: Style::Lines,
+            series,
+            weight: 1.0,
+            if_empty: "no steps".into(),
+        });
+    }
+    let chart = Chart {
+        title: case.title.into(),
+        x_label: "load".into(),
+        x_range: (0.0, last),
+        panels,
+        ..Chart::default()
+    };
+    for extension in ["svg", "png"] {
+        let path = folder.join(format!("{}.{extension}", case.name));
+        plot::write(&chart, (900, 800), &path)?;
+    }
+    Ok(())
+}
