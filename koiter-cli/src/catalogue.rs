@@ -2,7 +2,7 @@
 
 use koiter::material::presets;
 use koiter::scene::json_schema;
-use koiter::scene::model::BendingModel;
+use koiter::scene::model::{BendingModel, MaterialModel};
 use serde_json::{Value, json};
 
 use crate::arguments::CatalogueArguments;
@@ -23,7 +23,24 @@ pub(crate) fn materials(arguments: &CatalogueArguments) -> Result<(), Failure> {
                 "source": preset.source,
             })
         });
-        say!("{}", json!({ "materials": all, "default": Value::Null }));
+        let models = MaterialModel::ALL.map(|model| {
+            let info = model.info();
+            json!({
+                "name": info.name,
+                "what": info.what,
+                "keys": info.keys,
+                "source": info.source,
+            })
+        });
+        say!(
+            "{}",
+            json!({
+                "materials": all,
+                "default": Value::Null,
+                "models": models,
+                "default_model": MaterialModel::default().info().name,
+            })
+        );
         return Ok(());
     }
     say!("material         young [Pa]  poisson  density [kg/m³]  thickness [m]  source");
@@ -44,7 +61,21 @@ pub(crate) fn materials(arguments: &CatalogueArguments) -> Result<(), Failure> {
     say!(
         "none is the default: each shell names its own, as material = \"cotton\"; numbers replace single values,"
     );
-    say!("as material = {{ preset = \"cotton\", young = 2e6 }}. Sources: docs/references.bib");
+    say!("as material = {{ preset = \"cotton\", young = 2e6 }}.");
+    say!("");
+    say!("model                what it is; source");
+    for model in MaterialModel::ALL {
+        let info = model.info();
+        let remark = match model == MaterialModel::default() {
+            true => " (the default)",
+            false => "",
+        };
+        say!("{:20} {}{remark}", info.name, info.what);
+        say!("{:20} {}", "", info.source);
+    }
+    say!(
+        "a shell names its model, as material = {{ preset = \"latex-rubber\", model = \"neo-hookean\" }}. Sources: docs/references.bib"
+    );
     Ok(())
 }
 

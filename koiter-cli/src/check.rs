@@ -1,7 +1,7 @@
 //! `koiter check`: reads everything, runs nothing.
 
 use crate::output::say;
-use koiter::scene::model::{Load, Model};
+use koiter::scene::model::{Load, Model, Shell};
 use koiter::scene::{LoadTotal, readable_bytes};
 use serde::Serialize;
 
@@ -35,6 +35,7 @@ struct ShellReport {
     name: String,
     vertices: usize,
     faces: usize,
+    material: &'static str,
     area: f64,
     mass: f64,
     mean_edge: f64,
@@ -87,8 +88,9 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<(), Failure> {
             name: shell.name.clone(),
             vertices: surface.mesh.num_vertices(),
             faces: surface.mesh.num_faces(),
+            material: shell.composition.law.model().info().name,
             area: surface.area(),
-            mass: surface.area() * shell.thickness * shell.density,
+            mass: mass(shell),
             mean_edge: surface.mean_edge_length(),
             shortest_edge: surface.shortest_edge_length(),
             min_angle_degrees: surface.min_angle().to_degrees(),
@@ -136,6 +138,16 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Of a shell at its start shape [kg].
+fn mass(shell: &Shell) -> f64 {
+    let face_mass = |face: usize| {
+        let [a, b, c] = shell.surface.corners(face);
+        let area = 0.5 * (b - a).cross(&(c - a)).norm();
+        area * shell.face_thickness(face) * shell.face_density(face)
+    };
+    (0..shell.surface.mesh.num_faces()).map(face_mass).sum()
+}
+
 impl Report {
     fn print(&self) {
         if !self.title.is_empty() {
@@ -143,9 +155,10 @@ impl Report {
         }
         for shell in &self.shells {
             say!(
-                "shell {}: {} vertices, {} triangles, {} m², {} kg, edges {:.2e} m (shortest {:.2e} m), \
+                "shell {}: {}, {} vertices, {} triangles, {} m², {} kg, edges {:.2e} m (shortest {:.2e} m), \
                  smallest angle {:.1}°, boundary loops of {:?} vertices",
                 shell.name,
+                shell.material,
                 shell.vertices,
                 shell.faces,
                 decimal(shell.area),

@@ -225,6 +225,20 @@ impl MeshSource for Meshes {
         };
         raw.into_surface(options).map_err(unreadable)
     }
+
+    fn read_text(&self, file: &str) -> Result<String, UnreadableMesh> {
+        let path = match self {
+            Self::Folder(folder) => folder.join(file),
+            // Relative to where the program is run, as meshes of the user's are.
+            Self::Shipped(_) => PathBuf::from(file),
+        };
+        let told = |error: &dyn std::fmt::Display| UnreadableMesh {
+            message: format!("cannot read {}: {error}", path.display()),
+            help: None,
+        };
+        let bytes = read_bounded(&path, MAX_SCENE_BYTES).map_err(|error| told(&error))?;
+        String::from_utf8(bytes).map_err(|error| told(&error))
+    }
 }
 
 fn shipped_mesh(shipped: &Shipped, file: &str) -> Result<RawMesh, UnreadableMesh> {

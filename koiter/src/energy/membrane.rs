@@ -218,6 +218,11 @@ impl<S: Section> LocalEnergy<9, 3> for Membrane<S> {
         self.derivatives(stencil, q, kept)
     }
 
+    fn is_admissible(&self, stencil: usize, q: &SVector<f64, 9>) -> bool {
+        let strain = green_strain(&self.columns(stencil, q));
+        self.section.is_admissible(stencil, &strain)
+    }
+
     fn describe(&self, stencil: usize) -> String {
         format!("face {stencil}")
     }

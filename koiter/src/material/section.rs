@@ -3,9 +3,9 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
-use super::{Material, Response};
+use super::{Density, Material, Response};
 use crate::geometry::Real;
 
 /// The law of a shell: energies per unit rest area of each face [J/m²], in an orthonormal basis of the rest face.
@@ -30,6 +30,10 @@ pub trait Section: Send + Sync + Debug {
         let third = std::f64::consts::FRAC_PI_3;
         (along(0.0) + along(third) + along(2.0 * third)) / 3.0
     }
+    /// Whether the energy of stretching is finite at this strain.
+    fn is_admissible(&self, _face: usize, _strain: &Vector3<f64>) -> bool {
+        true
+    }
 }
 
 impl<S: Section + ?Sized> Section for Arc<S> {
@@ -40,6 +44,9 @@ impl<S: Section + ?Sized> Section for Arc<S> {
     #[inline]
     fn bend(&self, face: usize, curvature_change: &Vector3<f64>) -> Response {
         self.as_ref().bend(face, curvature_change)
+    }
+    fn is_admissible(&self, face: usize, strain: &Vector3<f64>) -> bool {
+        self.as_ref().is_admissible(face, strain)
     }
     fn flexural_rigidity(&self, face: usize) -> f64 {
         self.as_ref().flexural_rigidity(face)
@@ -78,6 +85,9 @@ impl<M: Material> Section for Homogeneous<M> {
             .linearized(face, curvature_change)
             .scaled(weight)
     }
+    fn is_admissible(&self, face: usize, strain: &Vector3<f64>) -> bool {
+        self.material.is_admissible(face, strain)
+    }
 }
 
 /// h³/12 [m³].
@@ -86,13 +96,25 @@ fn bending_weight(thickness: f64) -> f64 {
 }
 
 /// The densities over any numbers: the oracle of the tests.
-impl Homogeneous<super::StVenantKirchhoff> {
+impl<M: Density> Homogeneous<M> {
     /// Energy of stretching per unit area [J/m²].
     pub fn stretch_formula<R: Real>(&self, face: usize, strain: [R; 3]) -> R {
-        self.material.formula(strain) * self.thickness[face]
+        self.material.formula(face, strain) * self.thickness[face]
     }
     /// Energy of bending per unit area [J/m²].
-    pub fn bend_formula<R: Real>(&self, face: usize, curvature_change: [R; 3]) -> R {
-        self.material.formula(curvature_change) * bending_weight(self.thickness[face])
+    pub fn bend_formula<R: Real>(&self, face: usize, change: [R; 3]) -> R {
+        let tangent = self.material.linearized(face, &Vector3::zeros()).tangent;
+        quadratic(&tangent, change) * bending_weight(self.thickness[face])
     }
+}
+
+/// `½ xᵀ T x` over any numbers.
+pub(super) fn quadratic<R: Real>(tangent: &Matrix3<f64>, x: [R; 3]) -> R {
+    let mut sum = R::from(0.0);
+    for i in 0..3 {
+        for j in 0..3 {
+            sum = sum + x[i] * x[j] * (0.5 * tangent[(i, j)]);
+        }
+    }
+    sum
 }

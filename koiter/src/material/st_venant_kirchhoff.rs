@@ -9,7 +9,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Material, Response};
+use super::{Density, Material, Response};
 use crate::geometry::Real;
 
 /// The same isotropic material on every face.
@@ -30,17 +30,9 @@ impl StVenantKirchhoff {
         }
     }
 
-    /// w over any numbers: the oracle of the tests.
-    pub fn formula<R: Real>(&self, [e11, e22, e12]: [R; 3]) -> R {
-        let trace = e11 + e22;
-        let square = e11 * e11 + e22 * e22 + e12 * e12 * 2.0;
-        trace * trace * (0.5 * self.lame_alpha) + square * self.lame_beta
-    }
-}
-
-impl Material for StVenantKirchhoff {
+    /// w and its derivatives.
     #[inline]
-    fn response(&self, _face: usize, strain: &Vector3<f64>) -> Response {
+    pub(super) fn evaluate(&self, strain: &Vector3<f64>) -> Response {
         let (a, b) = (self.lame_alpha, self.lame_beta);
         let trace = strain.x + strain.y;
         let stress = Vector3::new(
@@ -55,10 +47,25 @@ impl Material for StVenantKirchhoff {
             tangent,
         }
     }
+}
+
+impl Material for StVenantKirchhoff {
+    #[inline]
+    fn response(&self, _face: usize, strain: &Vector3<f64>) -> Response {
+        self.evaluate(strain)
+    }
 
     #[inline]
-    fn linearized(&self, face: usize, strain: &Vector3<f64>) -> Response {
-        self.response(face, strain)
+    fn linearized(&self, _face: usize, strain: &Vector3<f64>) -> Response {
+        self.evaluate(strain)
+    }
+}
+
+impl Density for StVenantKirchhoff {
+    fn formula<R: Real>(&self, _face: usize, [e11, e22, e12]: [R; 3]) -> R {
+        let trace = e11 + e22;
+        let square = e11 * e11 + e22 * e22 + e12 * e12 * 2.0;
+        trace * trace * (0.5 * self.lame_alpha) + square * self.lame_beta
     }
 }
 

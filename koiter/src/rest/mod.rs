@@ -8,6 +8,7 @@
 mod intrinsic;
 
 pub use intrinsic::IntrinsicTriangulation;
+use nalgebra::Vector3;
 
 use crate::Vec3;
 use crate::mesh::Surface;
@@ -38,6 +39,41 @@ impl RestFrame {
     pub fn from_corners(x: &[Vec3; 3]) -> Option<Self> {
         let (e1, e2) = (x[1] - x[0], x[2] - x[0]);
         Self::from_first_form([e1.norm_squared(), e1.dot(&e2), e2.norm_squared()])
+    }
+
+    /// `D⁻ᵀ X D⁻¹` of a form X with entries `11, 12, 22` in the basis of the edges, as components `11, 22, 12`.
+    pub fn components(&self, [x11, x12, x22]: [f64; 3]) -> Vector3<f64> {
+        let [m11, m12, m22] = self.inverse;
+        Vector3::new(
+            m11 * m11 * x11,
+            m12 * m12 * x11 + 2.0 * m12 * m22 * x12 + m22 * m22 * x22,
+            m11 * (m12 * x11 + m22 * x12),
+        )
+    }
+
+    /// The form in the basis of the edges whose [`Self::components`] these are.
+    pub fn edge_form(&self, components: Vector3<f64>) -> [f64; 3] {
+        let [d11, d12, d22] = self.edges();
+        let (s11, s22, s12) = (components.x, components.y, components.z);
+        [
+            d11 * d11 * s11,
+            d11 * (d12 * s11 + d22 * s12),
+            d12 * d12 * s11 + 2.0 * d12 * d22 * s12 + d22 * d22 * s22,
+        ]
+    }
+
+    /// The unit vector along `c₁ (x_j − x_i) + c₂ (x_k − x_i)` in the frame.
+    pub fn direction(&self, [c1, c2]: [f64; 2]) -> [f64; 2] {
+        let [d11, d12, d22] = self.edges();
+        let (x, y) = (d11 * c1 + d12 * c2, d22 * c2);
+        let length = x.hypot(y);
+        [x / length, y / length]
+    }
+
+    /// Entries `11, 12, 22` of D [m].
+    fn edges(&self) -> [f64; 3] {
+        let [m11, m12, m22] = self.inverse;
+        [1.0 / m11, -m12 / (m11 * m22), 1.0 / m22]
     }
 
     /// The deformation gradient of a face with edges `e1`, `e2` out of the first corner, as its two columns.
@@ -115,6 +151,22 @@ mod tests {
                 && f1.dot(&f2).abs() < 1e-14
         );
         assert!((frame.area - 0.5 * (x[1] - x[0]).cross(&(x[2] - x[0])).norm()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn forms_change_their_basis_and_come_back() {
+        let first_form = [1.3, 0.4, 0.9];
+        let frame = RestFrame::from_first_form(first_form).unwrap();
+        let unit = frame.components(first_form);
+        assert!((unit - Vector3::new(1.0, 1.0, 0.0)).norm() < 1e-15);
+        let form = [0.7, -0.2, 1.1];
+        let back = frame.edge_form(frame.components(form));
+        assert!((0..3).all(|i| (back[i] - form[i]).abs() < 1e-14));
+        // Along the second edge the form is measured by that edge alone.
+        let [c, s] = frame.direction([0.0, 2.0]);
+        let k = frame.components(form);
+        let along = c * c * k.x + s * s * k.y + 2.0 * c * s * k.z;
+        assert!((along - form[2] / first_form[2]).abs() < 1e-14);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! From a checked model to energies, masses and contact.
 
 use super::clamps::Clamps;
+use super::composition::CompositionError;
 use super::elastic::{Elastic, rest_surface};
 use super::loads::loads;
 use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
@@ -24,6 +25,14 @@ pub enum BuildError {
         shell: String,
         /// What is wrong.
         error: RestError,
+    },
+    /// A material or a rest state that cannot be.
+    #[error("shell '{shell}': {error}")]
+    Composition {
+        /// Name of the shell.
+        shell: String,
+        /// What is wrong.
+        error: CompositionError,
     },
     /// The barrier reaches further than the elements are large.
     #[error(

@@ -1,5 +1,6 @@
 //! From what was typed to a model that can be simulated: meshes read, selections resolved, plausibility checked.
 
+mod composition;
 mod loads;
 mod symmetry;
 
@@ -7,7 +8,7 @@ use super::document::Document;
 use super::error::{SceneError, SceneErrorKind as Kind, Warning};
 use super::memory;
 use super::model::{
-    Composition, Constraint, ContactOptions, Model, Obstacle, ObstacleShape, Shell, SolverOptions,
+    Constraint, ContactOptions, Model, Obstacle, ObstacleShape, Shell, SolverOptions,
 };
 use super::placement::{MeshSource, ShapeError, move_point, move_to, place, turn};
 use super::probe::{Probe, ProbeTarget, mean};
@@ -18,7 +19,6 @@ use super::spec::{
 };
 use super::warnings;
 use crate::Vec3;
-use crate::material::presets;
 use crate::mesh::generate::{box_mesh, solid_cylinder};
 use crate::mesh::{Surface, VertexId};
 
@@ -161,27 +161,25 @@ impl Builder<'_> {
             None => surface.positions.clone(),
             Some(mesh) => self.rest_positions(&format!("{path}.rest_mesh"), mesh, &surface)?,
         };
-        let preset = shell.material.preset.as_deref().and_then(presets::find);
-        // The checks let no shell through that has neither the number nor a preset.
-        let value = |given: Option<f64>, of: fn(&presets::MaterialPreset) -> f64| {
-            given.or(preset.map(of)).unwrap_or(f64::NAN)
-        };
+        let (nominal, composition) = composition::compose(shell, self.source)?;
         let velocities = vec![Vec3::from(shell.velocity); surface.positions.len()];
-        Ok(Shell {
+        let shell = Shell {
             name: shell.name.clone(),
             velocities,
             rest_positions,
             rest_curved: shell.rest == RestSpec::Mesh,
-            thickness: value(shell.thickness, |preset| preset.thickness),
-            density: value(shell.material.density, |preset| preset.density),
-            youngs_modulus: value(shell.material.young, |preset| preset.youngs_modulus),
-            poissons_ratio: value(shell.material.poisson, |preset| preset.poissons_ratio),
-            composition: Composition::default(),
+            thickness: nominal.thickness,
+            density: nominal.density,
+            youngs_modulus: nominal.youngs_modulus,
+            poissons_ratio: nominal.poissons_ratio,
+            composition,
             bending: shell.bending,
             friction: shell.friction,
             contact_offset: shell.contact_thickness / 2.0,
             surface,
-        })
+        };
+        composition::check(&shell)?;
+        Ok(shell)
     }
 
     fn rest_positions(

@@ -1,6 +1,6 @@
 //! Clamped edges: from constraints to prescribed directors, and along their motions.
 
-use super::model::{Constraint, Model, Shell};
+use super::model::{Constraint, Model};
 use super::vertex_directors::HeldDirector;
 use crate::Vec3;
 use crate::assembly::Dof;
@@ -67,7 +67,7 @@ impl Clamps {
         let mut held_points = Vec::new();
         let mut edges = Vec::new();
         for (index, constraint) in model.constraints.iter().enumerate() {
-            let (shell, part) = (&model.shells[constraint.shell], &parts[constraint.shell]);
+            let part = &parts[constraint.shell];
             if !constraint.clamp_directors || constraint.axes != [true; 3] {
                 continue;
             }
@@ -95,7 +95,8 @@ impl Clamps {
                 let start_director = part.directors(face, q)[corner].normalize();
                 let apex = part.position(vertices[corner] as usize, q) - start_ends[0];
                 let altitude = along.cross(&apex).norm() / along.norm();
-                let stiffness = clamp_stiffness(shell, STIFFNESS, along.norm(), altitude);
+                let rigidity = part.section.flexural_rigidity(face);
+                let stiffness = clamp_stiffness(rigidity, STIFFNESS, along.norm(), altitude);
                 let stencil = &part.stencils[face];
                 sources.push(Source {
                     constraint: index,
@@ -149,10 +150,9 @@ impl Clamps {
     }
 }
 
-/// `factor` times the stiffness [J/rad²] with which a face of this altitude [m] resists a turning of its edge of this length [m].
-pub(super) fn clamp_stiffness(shell: &Shell, factor: f64, length: f64, altitude: f64) -> f64 {
-    let nu = shell.poissons_ratio;
-    let rigidity = shell.youngs_modulus * shell.thickness.powi(3) / (12.0 * (1.0 - nu * nu));
+/// `factor` times the stiffness [J/rad²] with which a face of this rigidity [N·m] and altitude [m] resists a turning of
+/// its edge of this length [m].
+pub(super) fn clamp_stiffness(rigidity: f64, factor: f64, length: f64, altitude: f64) -> f64 {
     factor * rigidity * length / altitude
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::assemble::{BuildError, Unknowns, write_points};
+use super::composition::{Composed, CompositionError};
 use super::model::{BendingModel, Model, Shell};
 use super::position_bending::PositionBending;
 use super::vertex_directors::kirchhoff_bending;
@@ -18,7 +19,7 @@ use crate::energy::bending::{
 use crate::integrate::{ShellPart, relax_directors};
 use crate::material::Section;
 use crate::mesh::Surface;
-use crate::rest::{RestError, rest_frames};
+use crate::rest::RestError;
 
 /// What the shells are made of.
 pub(super) struct Elastic {
@@ -42,8 +43,14 @@ impl Elastic {
         };
         let firsts = unknowns.vertices.iter().zip(&unknowns.extras);
         for (shell, (&first_vertex, &first_extra)) in model.shells.iter().zip(firsts) {
-            shell_part(shell, first_vertex, first_extra)
-                .and_then(|part| elastic.add(shell, part, &unknowns.layout, q))
+            let part = shell_part(shell, first_vertex, first_extra).map_err(|error| {
+                BuildError::Composition {
+                    shell: shell.name.clone(),
+                    error,
+                }
+            })?;
+            elastic
+                .add(shell, part, &unknowns.layout, q)
                 .map_err(|error| BuildError::Rest {
                     shell: shell.name.clone(),
                     error,
@@ -61,7 +68,7 @@ impl Elastic {
         q: &mut [f64],
     ) -> Result<(), RestError> {
         let masses = &mut self.masses;
-        add_vertex_masses(&part, shell.density, masses);
+        add_vertex_masses(shell, &part, masses);
         let membrane = Membrane::new(
             &part.mesh,
             part.first_vertex,
@@ -76,9 +83,10 @@ impl Elastic {
             // Without directors the forms are for display only, by bisectors at rest as deformed.
             let mut rest_q = q.to_vec();
             write_points(&mut rest_q, part.first_vertex, &shell.rest_positions);
-            part.rest_forms = (0..part.mesh.num_faces())
-                .map(|face| part.second_form(face, &rest_q))
-                .collect();
+            for face in 0..part.mesh.num_faces() {
+                let of_shape = part.second_form(face, &rest_q);
+                part.rest_forms[face] += of_shape;
+            }
         }
         self.parts.push(part);
         Ok(())
@@ -147,18 +155,26 @@ fn director_shape(bending: BendingModel) -> DirectorShape {
     }
 }
 
-fn shell_part(shell: &Shell, first_vertex: Dof, first_extra: Dof) -> Result<ShellPart, RestError> {
-    let rest = rest_surface(shell);
+fn shell_part(
+    shell: &Shell,
+    first_vertex: Dof,
+    first_extra: Dof,
+) -> Result<ShellPart, CompositionError> {
+    let Composed {
+        frames,
+        rest_forms,
+        section,
+    } = shell.compose()?;
     Ok(ShellPart {
         name: shell.name.clone(),
         mesh: shell.surface.mesh.clone(),
         first_vertex,
         extra: shell.bending.info().unknowns,
         first_extra,
-        frames: rest_frames(&rest)?,
-        rest_forms: vec![Vector3::zeros(); rest.mesh.num_faces()],
+        frames,
+        rest_forms,
         thickness: shell.thickness,
-        section: shell.section(),
+        section,
         director_shape: director_shape(shell.bending),
         stencils: bending_stencils(&shell.surface.mesh, first_vertex, first_extra),
     })
@@ -172,10 +188,10 @@ pub(super) fn rest_surface(shell: &Shell) -> Surface {
 }
 
 /// Every vertex takes a third of the mass of its rest faces.
-fn add_vertex_masses(part: &ShellPart, density: f64, masses: &mut [f64]) {
-    for (face, frame) in part.mesh.faces().iter().zip(&part.frames) {
-        let third = density * part.thickness * frame.area / 3.0;
-        for &v in face {
+fn add_vertex_masses(shell: &Shell, part: &ShellPart, masses: &mut [f64]) {
+    for (face, frame) in part.frames.iter().enumerate() {
+        let third = shell.face_density(face) * shell.face_thickness(face) * frame.area / 3.0;
+        for v in part.mesh.faces()[face] {
             let start = part.first_vertex.0 as usize + 3 * v as usize;
             masses[start..start + 3]
                 .iter_mut()
@@ -208,15 +224,17 @@ fn director_bending<P: AngleProfile + 'static>(
     let mut at_rest = bending(part, flat);
     relax_directors(&mut at_rest, layout, angles.clone(), &mut rest_q)?;
     if shell.rest_curved {
-        part.rest_forms = (0..num_faces)
-            .map(|f| at_rest.local().second_form(f, &at_rest.gather(f, &rest_q)))
-            .collect();
+        for (face, form) in part.rest_forms.iter_mut().enumerate() {
+            *form += (at_rest.local()).second_form(face, &at_rest.gather(face, &rest_q));
+        }
     }
     add_director_inertia(shell, part, &at_rest, &rest_q, masses);
     let mut energy = bending(part, part.rest_forms.clone());
     // From the rest directors: where the start shape is the rest shape this is the exact minimum, round-off included.
     q[angles.clone()].copy_from_slice(&rest_q[angles.clone()]);
-    if shell.surface.positions != shell.rest_positions {
+    let starts_at_rest =
+        shell.surface.positions == shell.rest_positions && !shell.has_prescribed_curvature();
+    if !starts_at_rest {
         relax_directors(&mut energy, layout, angles, q)?;
     }
     Ok(Some(Box::new(energy)))
@@ -230,11 +248,11 @@ fn add_director_inertia<P: AngleProfile>(
     rest_q: &[f64],
     masses: &mut [f64],
 ) {
-    let scale = shell.density * shell.thickness.powi(3) / 12.0;
     for face in 0..part.mesh.num_faces() {
         let shares = bending
             .local()
             .director_inertia(face, &bending.gather(face, rest_q));
+        let scale = shell.face_density(face) * shell.face_thickness(face).powi(3) / 12.0;
         for (edge, share) in part.mesh.face_edges()[face].iter().zip(shares) {
             masses[(part.first_extra.0 + edge.0) as usize] += scale * share;
         }

@@ -1,6 +1,6 @@
 //! Which meshes a model is made of, as a number a body: a scene's text does not show that a mesh file was changed.
 
-use super::model::{Model, ObstacleShape, Surface};
+use super::model::{Composition, Model, ObstacleShape, RestPrescription, Surface};
 use crate::Vec3;
 
 /// FNV-1a, 64 bits: two different meshes share it once in 10¹⁹; not meant against forgery.
@@ -23,6 +23,18 @@ impl Fnv {
         }
     }
 
+    /// What a file says of single faces.
+    fn add_composition(&mut self, composition: &Composition) {
+        for value in composition.by_face.values() {
+            self.add(&value.to_le_bytes());
+        }
+        self.add_points(&composition.axes);
+        let RestPrescription { first, second, .. } = &composition.rest;
+        for value in first.iter().chain(second).flatten().flatten() {
+            self.add(&value.to_le_bytes());
+        }
+    }
+
     fn add_surface(&mut self, surface: &Surface) {
         for vertex in surface.mesh.faces().iter().flatten() {
             self.add(&vertex.to_le_bytes());
@@ -38,6 +50,7 @@ impl Model {
             let mut hash = Fnv::new();
             hash.add_surface(&shell.surface);
             hash.add_points(&shell.rest_positions);
+            hash.add_composition(&shell.composition);
             (shell.name.clone(), hash.0)
         });
         let obstacles = self.obstacles.iter().map(|obstacle| {

@@ -13,6 +13,7 @@ mod elastic;
 mod fingerprint;
 mod free_parts;
 mod loads;
+mod material_models;
 pub mod measure;
 pub mod model;
 mod modes;
@@ -33,6 +34,8 @@ mod document;
 #[cfg(feature = "serde")]
 mod error;
 #[cfg(feature = "serde")]
+mod face_file;
+#[cfg(feature = "serde")]
 mod memory;
 #[cfg(feature = "serde")]
 mod nearest;
@@ -52,9 +55,11 @@ mod warnings;
 pub use self::{
     assemble::BuildError,
     bending_models::BendingModelInfo,
+    composition::CompositionError,
     display::PartTopology,
     free_parts::FreePart,
     loads::LoadTotal,
+    material_models::MaterialModelInfo,
     simulation::{Simulation, SystemStats},
     snapshot::{RestoreError, Snapshot},
 };

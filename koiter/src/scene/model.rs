@@ -3,7 +3,9 @@
 use crate::Vec3;
 use crate::mesh::{EdgeId, FaceId, VertexId};
 
-pub use super::composition::{Composition, MaterialLaw};
+pub use super::composition::{Composition, FaceValues, MaterialLaw, RestPrescription};
+pub use super::material_models::MaterialModel;
+pub use crate::material::Layer;
 pub use crate::mesh::Surface;
 
 /// Which second fundamental form (or hinge) a shell bends with.

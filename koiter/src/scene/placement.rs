@@ -7,13 +7,25 @@ use crate::Vec3;
 use crate::mesh::generate::{self, GeneratorError, GridDiagonals};
 use crate::mesh::{MeshError, OrientationPolicy, Surface, SurfaceOptions, UnreferencedPolicy};
 
-/// Where mesh files come from; the library's scenes read no files themselves.
+/// Where mesh files and files of values by face come from; the library's scenes read no files themselves.
 pub trait MeshSource {
     /// The mesh of the file named in a scene, checked but not scaled.
     ///
     /// # Errors
     /// Whatever the reader says; it is told with the place of the name.
     fn read(&self, file: &str, options: SurfaceOptions) -> Result<Surface, UnreadableMesh>;
+
+    /// The text of a file of values by face; refused unless the source has such files.
+    ///
+    /// # Errors
+    /// Whatever the reader says.
+    fn read_text(&self, _file: &str) -> Result<String, UnreadableMesh> {
+        let message = "this scene may not read files".to_owned();
+        Err(UnreadableMesh {
+            message,
+            help: None,
+        })
+    }
 }
 
 /// Why a mesh file cannot be used.

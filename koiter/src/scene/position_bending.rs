@@ -1,7 +1,5 @@
 //! Bending energies of a shell whose model has no unknowns beside positions, of vertices or of points on edges.
 
-use nalgebra::Vector3;
-
 use super::assemble::write_points;
 use super::elastic::rest_surface;
 use super::model::Shell;
@@ -97,14 +95,17 @@ impl<'a> PositionBending<'a> {
     pub(super) fn mid_edge_average(&self) -> Box<dyn Energy> {
         let num_faces = self.part.mesh.num_faces();
         let (stencils, frames) = (self.part.stencils.clone(), self.part.frames.clone());
-        let flat = vec![Vector3::zeros(); num_faces];
+        let forms = self.part.rest_forms.clone();
         let section = self.part.section.clone();
-        let faces = FaceBending::<MidEdgeAverage<_>>::new(stencils, frames, flat, section);
+        let faces = FaceBending::<MidEdgeAverage<_>>::new(stencils, frames, forms, section);
         let mut faces = Assembled::new(faces, self.layout);
         if self.curved {
             let mut q = vec![0.0; self.layout.num_dofs()];
             write_points(&mut q, self.part.first_vertex, &self.rest.positions);
-            let form = |face| faces.local().second_form(face, &faces.gather(face, &q));
+            let form = |face: usize| {
+                let of_shape = faces.local().second_form(face, &faces.gather(face, &q));
+                of_shape + self.part.rest_forms[face]
+            };
             let forms = (0..num_faces).map(form).collect();
             faces.local_mut().set_rest_forms(forms);
         }

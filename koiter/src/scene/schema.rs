@@ -32,7 +32,7 @@ pub(super) fn material(generator: &mut SchemaGenerator) -> Schema {
 }
 
 /// Names of the presets.
-pub(super) fn preset_name(_: &mut SchemaGenerator) -> Schema {
+pub(in crate::scene) fn preset_name(_: &mut SchemaGenerator) -> Schema {
     schema!({ "type": "string", "enum": presets::ALL.map(|preset| preset.name) })
 }
 

@@ -20,11 +20,13 @@
 
 mod check;
 mod load;
+mod material;
 mod shape;
 mod symmetry;
 
 pub use check::MAX_STEPS;
 pub use load::{EdgeChoice, LoadSpec};
+pub use material::{LayerSpec, MaterialSpec};
 pub use shape::{
     BoxSpec, CapsuleSpec, CylinderBodySpec, MeshSpec, PlaneSpec, RotationSpec, SphereSpec, Units,
     UpAxis,
@@ -134,6 +136,18 @@ pub struct ShellSpec {
     /// default: the start shape.
     #[serde(default)]
     pub rest_mesh: Option<MeshSpec>,
+    /// Factors on the rest lengths along the material's axis and across it.
+    #[serde(default = "no_stretch")]
+    pub rest_stretch: [f64; 2],
+    /// Curvatures [1/m] along the material's axis and across it, added to those of `rest`; positive where normals fan
+    /// out, whether or not a surface has them.
+    #[serde(default)]
+    pub rest_curvature: [f64; 2],
+    /// JSON file with values of single faces, relative to the scene's folder: lists `thickness`, `young`, `poisson`,
+    /// `density`, `young_across`, `shear`, `axis`, `first_form`, `second_form`, one value a face; forms as
+    /// `[11, 12, 22]` in the basis of the edges from a face's first corner to the second and third.
+    #[serde(default)]
+    pub faces: Option<String>,
     /// Start velocity of all vertices [m/s].
     #[serde(default)]
     pub velocity: [f64; 3],
@@ -143,6 +157,10 @@ pub struct ShellSpec {
     /// Distance [m] at which two midsurfaces touch, as if the shell were this thick; default 0.
     #[serde(default)]
     pub contact_thickness: f64,
+}
+
+fn no_stretch() -> [f64; 2] {
+    [1.0; 2]
 }
 
 fn default_friction() -> f64 {
@@ -159,25 +177,6 @@ pub enum RestSpec {
     Flat,
     /// The shell wants to be curved like its rest mesh.
     Mesh,
-}
-
-/// `material`: `"cotton"` is short for `{ preset = "cotton" }`.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MaterialSpec {
-    /// Name of a preset.
-    #[serde(default)]
-    #[schemars(schema_with = "super::schema::preset_name")]
-    pub preset: Option<String>,
-    /// Young's modulus [Pa].
-    #[serde(default)]
-    pub young: Option<f64>,
-    /// Poisson's ratio.
-    #[serde(default)]
-    pub poisson: Option<f64>,
-    /// Density [kg/m³].
-    #[serde(default)]
-    pub density: Option<f64>,
 }
 
 /// `[[obstacle]]`: exactly one shape.

@@ -49,12 +49,13 @@ pub(super) fn symmetry_edges(
             if normal.cross(&along).dot(&part.directors(face, q)[corner]) < 0.0 {
                 normal = -normal;
             }
+            let rigidity = part.section.flexural_rigidity(face);
             edges.push(SymmetryEdge {
                 corners: [a, b, c].map(|i| stencil.corners[i]),
                 angle: stencil.angles[corner],
                 sign: stencil.signs[corner],
                 normal,
-                stiffness: clamp_stiffness(shell, STIFFNESS, along.norm(), altitude),
+                stiffness: clamp_stiffness(rigidity, STIFFNESS, along.norm(), altitude),
                 vertices: part.mesh.edges()[edge],
             });
         }

@@ -23,6 +23,7 @@ pub(super) fn kirchhoff_bending(
 ) -> Result<Box<dyn Energy>, RestError> {
     add_inertia(shell, part, masses);
     let num_faces = part.mesh.num_faces();
+    let prescribed = part.rest_forms.clone();
     let mut energy = Assembled::new(
         DiscreteKirchhoff::new(
             &part.mesh,
@@ -42,15 +43,21 @@ pub(super) fn kirchhoff_bending(
         write_points(&mut rest_q, part.first_extra, &vertex_normals(&rest));
         relax_directors(&mut energy, layout, directors.clone(), &mut rest_q)?;
         let forms: Vec<[Vector3<f64>; 3]> = (0..num_faces)
-            .map(|f| energy.local().second_forms(f, &energy.gather(f, &rest_q)))
+            .map(|f| {
+                let of_shape = energy.local().second_forms(f, &energy.gather(f, &rest_q));
+                of_shape.map(|form| form + prescribed[f])
+            })
             .collect();
         part.rest_forms = forms.iter().map(|f| (f[0] + f[1] + f[2]) / 3.0).collect();
         energy.local_mut().set_rest_forms(forms);
-        if shell.surface.positions == shell.rest_positions {
+        if shell.surface.positions == shell.rest_positions && !shell.has_prescribed_curvature() {
             // The exact minimum, round-off included.
             q[directors.clone()].copy_from_slice(&rest_q[directors]);
             return Ok(Box::new(energy));
         }
+    } else {
+        let forms = prescribed.iter().map(|form| [*form; 3]).collect();
+        energy.local_mut().set_rest_forms(forms);
     }
     let start = Surface {
         mesh: part.mesh.clone(),
@@ -63,9 +70,9 @@ pub(super) fn kirchhoff_bending(
 
 /// ρ h³/12 times a third of the rest area of the faces around: the kinetic energy of `h³/12 ∫ ρ |ḋ|²`, lumped.
 fn add_inertia(shell: &Shell, part: &ShellPart, masses: &mut [f64]) {
-    let scale = shell.density * shell.thickness.powi(3) / 12.0;
-    for (face, frame) in part.mesh.faces().iter().zip(&part.frames) {
-        for v in face {
+    for (face, frame) in part.frames.iter().enumerate() {
+        let scale = shell.face_density(face) * shell.face_thickness(face).powi(3) / 12.0;
+        for v in part.mesh.faces()[face] {
             let start = (part.first_extra.0 + 3 * v) as usize;
             for mass in &mut masses[start..start + 3] {
                 *mass += scale * frame.area / 3.0;

@@ -58,6 +58,18 @@ impl MeshSource for Files {
         let positions = positions.map(|x| Vec3::from(x) * scale).to_vec();
         Surface::new(positions, faces, options).map_err(|error| unreadable(error.to_string()))
     }
+
+    fn read_text(&self, file: &str) -> Result<String, UnreadableMesh> {
+        let text = match file {
+            "faces.json" => r#"{"thickness": [1e-3, 3e-3], "density": [500, 100]}"#,
+            "three.json" => r#"{"thickness": [1e-3, 3e-3, 1e-3]}"#,
+            "negative.json" => r#"{"young": [1e6, -2]}"#,
+            "slip.json" => "{\n\"thicknes\": [1]}",
+            "form.json" => r#"{"first_form": [[1, 2, 1], [1, 0, 1]]}"#,
+            _ => "",
+        };
+        Ok(text.to_owned())
+    }
 }
 
 fn build(text: &str) -> Result<Scene, SceneError> {
@@ -296,5 +308,138 @@ fn a_static_shell_that_nothing_holds_is_warned_about() {
     assert_eq!(
         on_floor.model.free_parts()[0].to_string(),
         "shell 'a' along x, y, z"
+    );
+}
+
+/// Two triangles of half a square metre.
+const SQUARE: &str = r#"
+time = { end = 1.0, dt = 0.1 }
+integrator = "implicit-euler"
+[[shell]]
+name = "cloth"
+material = "cotton"
+mesh.file = "large.obj"
+mesh.scale = 2e-3
+"#;
+
+#[test]
+fn values_of_faces_reach_masses_and_sections() {
+    let text = format!("{SQUARE}faces = \"faces.json\"");
+    let shell = &build(&text).unwrap().model.shells[0];
+    assert_eq!((shell.thickness, shell.density), (2e-3, 300.0));
+    let masses = [0, 1].map(|f| shell.face_thickness(f) * shell.face_density(f) * 0.5);
+    assert_eq!(masses, [0.25, 0.15]);
+    let section = shell.compose().unwrap().section;
+    let rigidities = [0, 1].map(|f| section.flexural_rigidity(f));
+    assert!((rigidities[1] / rigidities[0] - 27.0).abs() < 1e-12);
+}
+
+#[test]
+fn materials_and_rest_forms_that_cannot_be_are_refused_at_their_key() {
+    let layers = |poisson: &str| {
+        format!(
+            "[shell.material]\nmodel = \"layered\"\npoisson = 0.3\ndensity = 1\n\
+             layers = [{{ thickness = 1e-3, young = 1e6{poisson} }}]"
+        )
+    };
+    let cases = [
+        (
+            "faces = \"three.json\"",
+            "cloth.faces",
+            "has 3 values, but the mesh has 2 faces",
+        ),
+        (
+            "faces = \"negative.json\"",
+            "cloth.faces",
+            "'young' of face 1 is -2",
+        ),
+        (
+            "faces = \"slip.json\"",
+            "cloth.faces",
+            "did you mean 'thickness'",
+        ),
+        (
+            "faces = \"form.json\"",
+            "cloth.faces",
+            "face 0 is not positive definite",
+        ),
+        (
+            "rest_curvature = [1, 0]\nbending = \"ds-theta\"",
+            "cloth.bending",
+            "rest curvature",
+        ),
+        (
+            "rest_stretch = [0, 1]",
+            "cloth.rest_stretch.0",
+            "larger than 0",
+        ),
+        (
+            "rest_strech = [1, 1]",
+            "cloth.rest_strech",
+            "did you mean 'rest_stretch'",
+        ),
+        (
+            "material.shear = 1e6",
+            "cloth.material.shear",
+            "model = \"orthotropic\"",
+        ),
+        (
+            "material.model = \"orthotropic\"",
+            "cloth.material",
+            "'young_across' is missing",
+        ),
+        (
+            "material.model = \"neo-hokean\"",
+            "cloth.material.model",
+            "did you mean 'neo-hookean'",
+        ),
+        (
+            "material.axis = [0, 0, 1]\nrest_curvature = [1, 0]",
+            "cloth.material.axis",
+            "upright on face 0",
+        ),
+        (
+            &layers(", poisson = 0.2"),
+            "cloth.material.layers.0.poisson",
+            "must share",
+        ),
+        (
+            "material.model = \"orthotropic\"\nmaterial.young_across = 1e5\nmaterial.shear = 1e4\nmaterial.poisson = 9",
+            "cloth.material",
+            "Poisson's ratio must lie between",
+        ),
+    ];
+    for (keys, path, words) in cases {
+        let base = match keys.contains("material") {
+            true => SQUARE.replace(
+                "material = \"cotton\"",
+                match keys.contains("layered") {
+                    true => "",
+                    false => "material.preset = \"cotton\"",
+                },
+            ),
+            false => SQUARE.to_owned(),
+        };
+        let error = build(&format!("{base}{keys}")).unwrap_err();
+        let said = format!(
+            "{} | {}",
+            error.message,
+            error.help.as_deref().unwrap_or("")
+        );
+        assert!(said.contains(words), "{keys}: {said}");
+        assert!(
+            error.path.starts_with(&format!("shell.{path}")),
+            "{keys}: {}",
+            error.path
+        );
+        assert!(error.location.is_some(), "{keys}");
+    }
+    assert!(
+        build(&format!(
+            "{}{}",
+            SQUARE.replace("material = \"cotton\"", ""),
+            layers("")
+        ))
+        .is_ok()
     );
 }

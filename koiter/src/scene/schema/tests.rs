@@ -9,7 +9,7 @@ const SCENE: &str = r#"
 time = { end = 1.0, dt = 0.1 }
 [[shell]]
 name = "sheet"
-material = "cotton"
+material = { preset = "cotton", layers = [{ thickness = 1e-3, young = 1e6 }] }
 mesh.grid = { size = [1.0, 1.0], cells = [2, 2] }
 [[obstacle]]
 name = "floor"

@@ -4,16 +4,16 @@ mod loads;
 
 use std::collections::HashSet;
 
+use super::material::check_material;
 use super::{
     ConstraintSpec, ENERGY_NAMES, FIELD_NAMES, MeshSpec, ObstacleSpec, ProbeQuantity, ProbeSpec,
     RotationSpec, SceneSpec, SelectSpec, ShellSpec, SymmetrySpec,
 };
-use crate::material::presets;
 use crate::scene::document::suggest;
 use crate::scene::error::{SceneError, SceneErrorKind as Kind};
 use crate::scene::schedule::{MotionSpec, Schedule};
 
-type Checked = Result<(), SceneError>;
+pub(super) type Checked = Result<(), SceneError>;
 
 /// More steps than this are a slip in `dt` or in the end.
 pub const MAX_STEPS: f64 = 1e8;
@@ -103,39 +103,7 @@ fn check_shell(path: &str, shell: &ShellSpec) -> Checked {
     if let Some(mesh) = &shell.rest_mesh {
         check_mesh(&at("rest_mesh"), mesh)?;
     }
-    let material = &shell.material;
-    if let Some(name) = &material.preset {
-        let names: Vec<&str> = presets::ALL.iter().map(|preset| preset.name).collect();
-        if !names.contains(&name.as_str()) {
-            let message = format!("there is no material '{name}'");
-            return Err(error(Kind::UnknownName, &at("material.preset"), message)
-                .with_help(suggest(name, &names)));
-        }
-    }
-    let needed = [
-        ("material.young", material.young),
-        ("material.poisson", material.poisson),
-        ("material.density", material.density),
-        ("thickness", shell.thickness),
-    ];
-    for (key, value) in needed {
-        if value.is_none() && material.preset.is_none() {
-            let message = format!("the shell has neither a material preset nor '{key}'");
-            return Err(error(Kind::MissingKey, &at(key), message).with_help(
-                "write material = \"cotton\", or give young, poisson, density and thickness",
-            ));
-        }
-    }
-    optional_positive(&at("material.young"), material.young, "Pa")?;
-    optional_positive(&at("material.density"), material.density, "kg/m³")?;
-    optional_positive(&at("thickness"), shell.thickness, "m")?;
-    if let Some(poisson) = material.poisson
-        && !(-1.0 < poisson && poisson < 0.5 || poisson == 0.5)
-    {
-        let message =
-            format!("Poisson's ratio must lie above -1 and at most at 0.5, but it is {poisson}");
-        return Err(error(Kind::OutOfRange, &at("material.poisson"), message));
-    }
+    check_material(path, shell)?;
     not_negative(&at("friction"), shell.friction, "")?;
     not_negative(&at("contact_thickness"), shell.contact_thickness, "m")
 }
@@ -497,7 +465,7 @@ fn exactly_one(path: &str, given: &[&str], all: &str) -> Checked {
     }
 }
 
-fn positive(path: &str, value: f64, unit: &str) -> Checked {
+pub(super) fn positive(path: &str, value: f64, unit: &str) -> Checked {
     if value.is_finite() && value > 0.0 {
         return Ok(());
     }
@@ -509,7 +477,7 @@ fn positive(path: &str, value: f64, unit: &str) -> Checked {
     Err(error(Kind::OutOfRange, path, message))
 }
 
-fn optional_positive(path: &str, value: Option<f64>, unit: &str) -> Checked {
+pub(super) fn optional_positive(path: &str, value: Option<f64>, unit: &str) -> Checked {
     value.map_or(Ok(()), |value| positive(path, value, unit))
 }
 
@@ -525,10 +493,22 @@ fn not_negative(path: &str, value: f64, unit: &str) -> Checked {
     Err(error(Kind::OutOfRange, path, message))
 }
 
+/// Passes finite numbers.
+pub(super) fn all_finite(path: &str, values: &[f64]) -> Checked {
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(value) => Err(error(
+            Kind::OutOfRange,
+            path,
+            format!("{value} is not a finite number"),
+        )),
+        None => Ok(()),
+    }
+}
+
 fn with_unit(value: f64, unit: &str) -> String {
     format!("{value} {unit}").trim_end().to_owned()
 }
 
-fn error(kind: Kind, path: &str, message: String) -> SceneError {
+pub(super) fn error(kind: Kind, path: &str, message: String) -> SceneError {
     SceneError::new(kind, message).inside(path)
 }
