@@ -101,7 +101,8 @@ fn an_axis_turns_prescribed_curvature() {
 
 #[test]
 fn a_prescribed_stretch_lengthens_a_strip() {
-    for model in ["st-venant-kirchhoff", "neo-hookean", "tension-field"] {
+    // Not a tension field: what is too short for its rest length is slack, and need not grow.
+    for model in ["st-venant-kirchhoff", "neo-hookean"] {
         let shell = format!(
             "thickness = 1e-3\nrest_stretch = [1.1, 0.9]\n\
              material = {{ model = \"{model}\", young = 1e7, poisson = 0.3, density = 1000 }}"
