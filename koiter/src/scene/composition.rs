@@ -457,7 +457,7 @@ impl MaterialLaw {
     }
 }
 
-/// Whether a bending model asks a section of a second fundamental form (or bends not at all).
+/// Whether a bending model asks the section what a second fundamental form costs (or bends not at all).
 fn has_second_form(bending: BendingModel) -> bool {
     match bending {
         BendingModel::Bac
@@ -472,7 +472,8 @@ fn has_second_form(bending: BendingModel) -> bool {
         | BendingModel::ChFs
         | BendingModel::QbCr
         | BendingModel::QbPl
-        | BendingModel::QbInt => false,
+        | BendingModel::QbInt
+        | BendingModel::Ds2nd => false,
     }
 }
 
