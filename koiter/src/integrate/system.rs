@@ -206,7 +206,6 @@ impl System {
         energies.push(&mut self.symmetry);
         energies.push(&mut self.gravity);
         energies.push(&mut self.loads);
-        let (is_static, has_contact) = (inertia.is_none(), self.contact.is_some());
         // Inertia holds a body on a saddle for the moment that a step takes; at rest it would not stay there.
         let minimize = if inertia.is_some() {
             minimize
@@ -227,15 +226,10 @@ impl System {
             is_fixed: &prescribed.is_fixed,
             target: &prescribed.target,
         };
-        // Far from contact an equilibrium is near the last one, where the energy is convex.
-        let hessian = match is_static && !has_contact {
-            true => HessianChoice::ExactWhereConvex,
-            false => HessianChoice::Projected,
-        };
         let options = NewtonOptions {
             tolerance,
             max_iterations: self.max_iterations,
-            hessian,
+            hessian: HessianChoice::Projected,
         };
         let newton = minimize(&mut problem, &options, &mut self.workspace, q)?;
         let friction = self.contact.is_some().then(|| friction.value(q));
