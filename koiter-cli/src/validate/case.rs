@@ -12,8 +12,8 @@ pub(super) struct Case {
     pub(super) set: &'static [&'static str],
     /// The key that refines the mesh.
     pub(super) cells_key: &'static str,
-    /// Its values: each level halves the cells of the one before.
-    pub(super) levels: &'static [[usize; 2]],
+    /// Its values, a number or a list: each level halves the cells of the one before.
+    pub(super) levels: &'static [&'static [usize]],
     /// What is asked of the scene.
     pub(super) question: Question,
     /// Published values: a table with a heading.

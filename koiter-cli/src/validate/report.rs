@@ -9,7 +9,10 @@ pub(super) fn print(case: &Case, studies: &[Study]) {
     say!("\n{}: {}", case.name, case.title);
     let Some(first) = studies.first() else { return };
     let meshes: Vec<String> = (first.cells.iter())
-        .map(|[a, b]| format!("{:>10}", format!("{a}x{b}")))
+        .map(|cells| {
+            let numbers: Vec<String> = cells.iter().map(usize::to_string).collect();
+            format!("{:>10}", numbers.join("x"))
+        })
         .collect();
     say!(
         "  {:18} {:10} {} {:>10} {:>9} {:>6} {:>12} {:>9}  {:15} {:>6}",

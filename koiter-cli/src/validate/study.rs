@@ -47,7 +47,7 @@ impl Verdict {
 /// A case with a model.
 pub(super) struct Study {
     pub(super) model: String,
-    pub(super) cells: Vec<[usize; 2]>,
+    pub(super) cells: Vec<&'static [usize]>,
     pub(super) findings: Vec<Finding>,
     pub(super) seconds: f64,
 }
@@ -61,7 +61,7 @@ impl Study {
         let start = Instant::now();
         let cells = case.levels[..levels.min(case.levels.len())].to_vec();
         let measured = (cells.iter())
-            .map(|cells| measure(case, model, *cells))
+            .map(|cells| measure(case, model, cells))
             .collect::<Result<Vec<Measured>, Failure>>()?;
         let quantities = case.quantities().into_iter().enumerate();
         let findings = quantities
@@ -159,15 +159,18 @@ impl Finding {
 }
 
 /// The scene of a case on a mesh.
-pub(super) fn scene(case: &Case, model: &str, [a, b]: [usize; 2]) -> Result<Scene, Failure> {
+pub(super) fn scene(case: &Case, model: &str, cells: &[usize]) -> Result<Scene, Failure> {
     let mut set: Vec<String> = case.set.iter().map(|text| (*text).to_owned()).collect();
-    set.push(format!("{}=[{a}, {b}]", case.cells_key));
+    set.push(match cells {
+        [one] => format!("{}={one}", case.cells_key),
+        several => format!("{}={several:?}", case.cells_key),
+    });
     set.push(format!("{}.bending={model}", case.shell()));
     let file = SceneFile::parse(case.name, case.scene, &set)?;
     Ok(Scene::build(&file, &NoFiles)?)
 }
 
-fn measure(case: &Case, model: &str, cells: [usize; 2]) -> Result<Measured, Failure> {
+fn measure(case: &Case, model: &str, cells: &[usize]) -> Result<Measured, Failure> {
     let scene = scene(case, model, cells)?;
     let mut simulation = Simulation::new(scene.model.clone()).map_err(Failure::input)?;
     match case.question {
