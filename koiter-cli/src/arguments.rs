@@ -285,6 +285,8 @@ pub(crate) enum BenchSubject {
     Contact(SizeArguments),
     /// Whole steps of the scene drape-n
     Drape(DrapeArguments),
+    /// What each bending model costs: evaluations, and nonzeros of its Hessian
+    Models(ModelsArguments),
     /// Bending energies of known shapes under refinement: "Better Bending", Table 4 and Figures 3 to 12
     Convergence(ConvergenceArguments),
     /// Bending energies of an unresolved crease: "Better Bending", Table 5, Figures 13 and 14
@@ -352,6 +354,19 @@ fn parse_load(text: &str) -> Result<f64, String> {
     (text.parse().ok())
         .filter(|load: &f64| *load > 0.0 && load.is_finite())
         .ok_or_else(|| "write a load above 0".into())
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ModelsArguments {
+    /// Bending models
+    #[arg(long, value_delimiter = ',', default_value = "all")]
+    pub(crate) models: Vec<String>,
+    /// Numbers of triangles, about
+    #[arg(long, value_delimiter = ',', default_value = "10000,160000", value_parser = parse_faces)]
+    pub(crate) faces: Vec<usize>,
+    /// Repetitions; the fastest counts
+    #[arg(long, default_value_t = 3, allow_negative_numbers = true)]
+    pub(crate) repeats: usize,
 }
 
 /// Largest meshes of benchmarks: 4 GB of matrix.

@@ -9,6 +9,7 @@ mod creased_vee;
 mod drape;
 mod lateral_buckling;
 mod model_style;
+mod models;
 mod published;
 mod sheet;
 mod solve;
@@ -33,6 +34,7 @@ pub(crate) fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         BenchSubject::CreasedVee(options) => {
             return creased_vee::bench(options, arguments.json);
         }
+        BenchSubject::Models(options) => models::bench(options),
         BenchSubject::LateralBuckling(options) => lateral_buckling::bench(options),
     }?;
     if arguments.json {

@@ -10,6 +10,7 @@ use koiter::assembly::{
 use koiter::energy::Membrane;
 use koiter::energy::bending::{MidEdgeBending, Tangent, bending_stencils};
 use koiter::material::{Homogeneous, StVenantKirchhoff};
+use koiter::mesh::Surface;
 use koiter::mesh::generate::irregular;
 use koiter::rest::rest_frames;
 use nalgebra::Vector3;
@@ -17,9 +18,9 @@ use nalgebra::Vector3;
 use crate::failure::Failure;
 
 /// Cotton, 1 mm thick, on 1 m².
-const YOUNGS_MODULUS: f64 = 1e6;
-const POISSONS_RATIO: f64 = 0.3;
-const THICKNESS: f64 = 1e-3;
+pub(super) const YOUNGS_MODULUS: f64 = 1e6;
+pub(super) const POISSONS_RATIO: f64 = 0.3;
+pub(super) const THICKNESS: f64 = 1e-3;
 const DENSITY: f64 = 500.0;
 const TIME_STEP: f64 = 0.02;
 
@@ -36,11 +37,24 @@ pub(super) struct Sheet {
 /// The mean area of an irregular mesh, as a fraction of its largest.
 const MEAN_AREA: f64 = 0.65;
 
+/// A flat sheet of about `faces` triangles.
+pub(super) fn flat_sheet(faces: usize) -> Result<Surface, Failure> {
+    irregular(1.0, 1.0, 1.0 / (MEAN_AREA * faces as f64), 1)
+        .map_err(|error| Failure::input(error.to_string()))
+}
+
+/// The positions of a sheet, rippled and noisy.
+pub(super) fn posed_positions(sheet: &Surface) -> Vec<Vec3> {
+    let spacing = sheet.mean_edge_length();
+    (sheet.positions.iter().enumerate())
+        .map(|(v, x)| posed(v, x, spacing))
+        .collect()
+}
+
 impl Sheet {
     /// A sheet of about `faces` triangles.
     pub(super) fn new(faces: usize) -> Result<Self, Failure> {
-        let surface = irregular(1.0, 1.0, 1.0 / (MEAN_AREA * faces as f64), 1)
-            .map_err(|error| Failure::input(error.to_string()))?;
+        let surface = flat_sheet(faces)?;
         let mesh = &surface.mesh;
         let mut layout = DofLayout::new();
         let first_vertex = layout.push_nodes(mesh.num_vertices(), 3, true);
@@ -66,9 +80,8 @@ impl Sheet {
             Box::new(Assembled::new(bending, &layout)),
         ];
         let mut q = vec![0.0; layout.num_dofs()];
-        let spacing = surface.mean_edge_length();
-        for (v, x) in surface.positions.iter().enumerate() {
-            q[3 * v..3 * v + 3].copy_from_slice(posed(v, x, spacing).as_slice());
+        for (v, x) in posed_positions(&surface).iter().enumerate() {
+            q[3 * v..3 * v + 3].copy_from_slice(x.as_slice());
         }
         let mut builder = PatternBuilder::default();
         for energy in &energies {

@@ -162,7 +162,7 @@ pub(super) struct Unknowns {
 
 impl Unknowns {
     /// All vertices, then what the bending models add to them, then the obstacles, whose motion is prescribed.
-    fn new(model: &Model) -> Self {
+    pub(super) fn new(model: &Model) -> Self {
         let mut layout = DofLayout::new();
         let vertices = push_vertices(model, &mut layout, true);
         let extras = push_extras(model, &mut layout);

@@ -4,10 +4,12 @@
 //! only the unknowns that the bending model adds are solved for.
 
 mod directors;
+mod free;
 mod refinement;
 pub mod shapes;
 
 pub use directors::{Directors, natural_directors};
+pub use free::FreeBending;
 pub use refinement::Refinement;
 
 use std::ops::Range;
@@ -86,15 +88,7 @@ impl Measurement<'_> {
     pub fn prepare(&self, directors: &Directors) -> Result<MeasuredShape, RestError> {
         let mesh = &self.deformed.mesh;
         assert_eq!(self.rest_positions.len(), mesh.num_vertices());
-        // The shell starts in its rest shape: what it takes to build it is then what its rest state takes, whatever
-        // is asked of the deformed one.
-        let model = self.at_rest();
-        let unknowns = Unknowns::with_held_vertices(&model);
-        let (mut q, _) = unknowns.start(&model);
-        let elastic = Elastic::new(&model, &unknowns, &mut q).map_err(|error| match error {
-            BuildError::Rest { error, .. } => error,
-            other => unreachable!("a single shell without contact: {other}"),
-        })?;
+        let (unknowns, elastic, mut q) = self.build(Unknowns::with_held_vertices)?;
         let mut energies = elastic.energies.into_iter();
         let part = &elastic.parts[0];
         let (range, first_vertex) = (part.extra_dofs(), part.first_vertex);
@@ -140,6 +134,22 @@ impl Measurement<'_> {
     /// As [`Measurement::prepare`].
     pub fn energies(&self) -> Result<Measured, RestError> {
         Ok(self.prepare(&Directors::Minimise)?.energies())
+    }
+
+    /// The shell in its rest shape: what it takes to build it is then what its rest state takes, whatever is asked of
+    /// the deformed one.
+    fn build(
+        &self,
+        unknowns: impl Fn(&Model) -> Unknowns,
+    ) -> Result<(Unknowns, Elastic, Vec<f64>), RestError> {
+        let model = self.at_rest();
+        let unknowns = unknowns(&model);
+        let (mut q, _) = unknowns.start(&model);
+        let elastic = Elastic::new(&model, &unknowns, &mut q).map_err(|error| match error {
+            BuildError::Rest { error, .. } => error,
+            other => unreachable!("a single shell without contact: {other}"),
+        })?;
+        Ok((unknowns, elastic, q))
     }
 
     /// A model of one shell in its rest shape, without anything else.
