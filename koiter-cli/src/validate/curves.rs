@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use koiter_render::{Chart, Panel, Series, Style};
+use koiter_render::{Chart, Marker, Panel, Series, Style};
 
 use super::case::Case;
 use super::study::Study;
@@ -20,16 +20,19 @@ pub(super) fn draw(case: &Case, studies: &[Study], folder: &Path) -> Result<(), 
         if finding.curve.is_empty() {
             return Ok(());
         }
-        let mut series = vec![Series {
-            name: "published".into(),
-            points: finding.quantity.curve.clone(),
-            ..Series::default()
-        }];
-        series.extend(studies.iter().map(|study| Series {
+        let of_model = |study: &Study| Series {
             name: study.model.clone(),
             points: study.findings[k].curve.clone(),
             ..Series::default()
-        }));
+        };
+        let mut series: Vec<Series> = studies.iter().map(of_model).collect();
+        // Signs on top of the curves, which lie on each other where all is well.
+        series.push(Series {
+            name: "published".into(),
+            points: finding.quantity.curve.clone(),
+            color: Some([0; 3]),
+            marker: Some(Marker::Circle),
+        });
         last = (finding.quantity.curve.iter()).fold(last, |last, point| last.max(point[0]));
         panels.push(Panel {
             name: finding.quantity.name.replace('_', " "),
