@@ -58,7 +58,7 @@ fn nonzeros_a_face(extra: ExtraUnknowns) -> usize {
         ExtraUnknowns::EdgeAngles => 166,
         // Six unknowns a vertex, which meets itself and six others.
         ExtraUnknowns::VertexDirectors => 126,
-        ExtraUnknowns::EdgePoints => 300,
+        ExtraUnknowns::EdgePoints => 448,
     }
 }
 

@@ -70,7 +70,8 @@ pub struct MeasuredGradient {
 /// A shape ready to be evaluated: its energies, and the unknowns at which they are taken.
 pub struct MeasuredShape {
     membrane: Box<dyn Energy>,
-    bending: Option<Box<dyn Energy>>,
+    /// None without a bending model, two with DS(2nd).
+    bending: Vec<Box<dyn Energy>>,
     q: Vec<f64>,
     vertices: Range<usize>,
     directors: Range<usize>,
@@ -93,7 +94,7 @@ impl Measurement<'_> {
         let part = &elastic.parts[0];
         let (range, first_vertex) = (part.extra_dofs(), part.first_vertex);
         let membrane = energies.next().expect("every shell has a membrane");
-        let mut bending = energies.next();
+        let mut bending: Vec<_> = energies.collect();
         write_points(&mut q, first_vertex, &self.deformed.positions);
         let is_at_rest = self.deformed.positions == self.rest_positions;
         match directors {
@@ -106,16 +107,12 @@ impl Measurement<'_> {
             Directors::Minimise => {
                 let start = natural_directors(self.model.info().unknowns, self.deformed);
                 q[range.clone()].copy_from_slice(&start);
-                let energy = bending.as_mut().expect("models with directors bend");
                 let (layout, range) = (&unknowns.layout, range.clone());
                 if part.extra == ExtraUnknowns::EdgePoints {
-                    let (energies, edge) = (
-                        std::slice::from_mut(energy),
-                        self.deformed.mean_edge_length(),
-                    );
-                    relax_edge_points(energies, layout, range, edge, &mut q)?;
+                    let edge = self.deformed.mean_edge_length();
+                    relax_edge_points(&mut bending, layout, range, edge, &mut q)?;
                 } else {
-                    relax_directors(energy.as_mut(), layout, range, &mut q)?;
+                    relax_directors(bending[0].as_mut(), layout, range, &mut q)?;
                 }
             }
         }
@@ -195,19 +192,14 @@ impl MeasuredShape {
     pub fn energies(&self) -> Measured {
         Measured {
             membrane: self.membrane.value(&self.q),
-            bending: self
-                .bending
-                .as_ref()
-                .map_or(0.0, |energy| energy.value(&self.q)),
+            bending: self.bending.iter().map(|e| e.value(&self.q)).sum(),
             directors: self.q[self.directors.clone()].to_vec(),
         }
     }
 
     /// Whether the bending energy is defined here: that of BAC is not where a director is tilted by π/2.
     pub fn is_admissible(&self) -> bool {
-        self.bending
-            .as_ref()
-            .is_none_or(|energy| energy.is_admissible(&self.q))
+        self.bending.iter().all(|e| e.is_admissible(&self.q))
     }
 
     /// The gradients.
@@ -219,7 +211,7 @@ impl MeasuredShape {
         let mut membrane = vec![0.0; self.q.len()];
         self.membrane.add_gradient(&self.q, &mut membrane);
         let mut bending = vec![0.0; self.q.len()];
-        if let Some(energy) = &self.bending {
+        for energy in &self.bending {
             energy.add_gradient(&self.q, &mut bending);
         }
         MeasuredGradient {
