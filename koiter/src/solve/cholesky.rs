@@ -54,7 +54,7 @@ mod tests {
 
     use super::*;
     use crate::assembly::{DofLayout, NodeId, PatternBuilder};
-    use crate::solve::nested_dissection;
+    use crate::solve::{SignedCholesky, nested_dissection};
 
     /// Nodes of three unknowns on the vertices of an n × n grid and of one unknown on its cells.
     fn grid(n: u32) -> SymmetricMatrix {
@@ -122,6 +122,31 @@ mod tests {
                 // The condition of both matrices is below 100.
                 assert!((a - b).abs() < 1e-13, "{solver:?}: {a} for {b}");
             }
+        }
+    }
+
+    #[test]
+    fn an_indefinite_matrix_is_solved_and_its_signs_are_counted() {
+        let mut matrix = grid(20);
+        let pattern = Arc::clone(&matrix.pattern);
+        let n = pattern.num_rows();
+        // Entries off the diagonal of a row sum to less than 7: as many negative eigenvalues as negative diagonal entries.
+        for (i, &position) in pattern.diagonal_positions().iter().enumerate() {
+            matrix.values[position as usize] = if i % 7 == 3 { -7.0 } else { 7.0 };
+        }
+        let mut factor = SignedCholesky::default();
+        factor.analyze(&pattern, &nested_dissection(&pattern));
+        factor.factorize(&matrix).unwrap();
+        let expected = (0..n).filter(|i| i % 7 == 3).count();
+        assert_eq!(factor.negative_pivots(), expected);
+        let expected: Vec<f64> = (0..2 * n).map(|i| (i as f64 * 0.3).cos()).collect();
+        let mut x: Vec<f64> = (expected.chunks(n))
+            .flat_map(|column| matrix.multiply(column))
+            .collect();
+        factor.solve(&mut x);
+        for (a, b) in x.iter().zip(&expected) {
+            // Rows are dominated by their diagonal: pivots do not grow.
+            assert!((a - b).abs() < 1e-13, "{a} for {b}");
         }
     }
 

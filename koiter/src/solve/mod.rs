@@ -2,6 +2,7 @@
 
 mod cholesky;
 mod eigen;
+mod ldlt;
 mod line_search;
 mod multifrontal;
 mod newton;
@@ -13,6 +14,7 @@ mod workspace;
 
 pub use cholesky::{LinearSolver, NotPositiveDefinite, SparseCholesky};
 pub use eigen::{EigenNotConverged, EigenPair, largest_eigenpairs};
+pub use ldlt::SignedCholesky;
 pub use multifrontal::Multifrontal;
 pub use newton::{
     HessianChoice, NewtonOptions, NewtonReport, Problem, SolveError, minimize, minimize_stably,

@@ -3,6 +3,7 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
@@ -14,36 +15,63 @@ use super::cholesky::{NotPositiveDefinite, SparseCholesky};
 use super::ordering::NodeOrdering;
 use crate::assembly::{Pattern, SymmetricMatrix};
 
+/// What is known of a factor before its numbers.
+pub(super) struct Analysis {
+    pub(super) symbolic: SymbolicCholesky<u32>,
+    pub(super) new_to_old: Vec<u32>,
+}
+
+impl Analysis {
+    /// Of matrices of `pattern`, eliminated in the given order, in supernodes whatever they are like.
+    pub(super) fn new(pattern: &Pattern, ordering: &NodeOrdering) -> Self {
+        let n = pattern.num_rows();
+        let new_to_old = ordering.scalar_order(pattern);
+        let mut old_to_new = vec![0u32; n];
+        for (new, &old) in new_to_old.iter().enumerate() {
+            old_to_new[old as usize] = new as u32;
+        }
+        let permutation = PermRef::new_checked(&new_to_old, &old_to_new, n);
+        let symbolic = factorize_symbolic_cholesky(
+            structure(pattern),
+            Side::Lower,
+            SymmetricOrdering::Custom(permutation),
+            CholeskySymbolicParams {
+                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+                ..Default::default()
+            },
+        )
+        .expect("the factor fits in memory and its indices in 32 bits");
+        Self {
+            symbolic,
+            new_to_old,
+        }
+    }
+
+    /// The unknown of a pivot that failed.
+    pub(super) fn failure(&self, pivot: usize) -> NotPositiveDefinite {
+        NotPositiveDefinite {
+            dof: self.new_to_old.get(pivot).map_or(0, |&dof| dof as usize),
+        }
+    }
+}
+
 /// Supernodal Cholesky by faer, on one thread: its own parallelism inside small dense kernels costs more than it gains.
 #[derive(Default)]
 pub struct Supernodal {
-    symbolic: Option<SymbolicCholesky<u32>>,
-    new_to_old: Vec<u32>,
+    analysis: Option<Analysis>,
     values: Vec<f64>,
     memory: Option<MemBuffer>,
 }
 
 impl SparseCholesky for Supernodal {
     fn analyze(&mut self, pattern: &Pattern, ordering: &NodeOrdering) {
-        let n = pattern.num_rows();
-        self.new_to_old = ordering.scalar_order(pattern);
-        let mut old_to_new = vec![0u32; n];
-        for (new, &old) in self.new_to_old.iter().enumerate() {
-            old_to_new[old as usize] = new as u32;
-        }
-        let permutation = PermRef::new_checked(&self.new_to_old, &old_to_new, n);
-        let symbolic = factorize_symbolic_cholesky(
-            structure(pattern),
-            Side::Lower,
-            SymmetricOrdering::Custom(permutation),
-            CholeskySymbolicParams::default(),
-        )
-        .expect("the factor fits in memory and its indices in 32 bits");
+        let analysis = Analysis::new(pattern, ordering);
+        let symbolic = &analysis.symbolic;
         let factor = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
         self.memory = Some(MemBuffer::new(factor));
         self.values.clear();
         self.values.resize(symbolic.len_val(), 0.0);
-        self.symbolic = Some(symbolic);
+        self.analysis = Some(analysis);
     }
 
     fn factor_entries(&self) -> usize {
@@ -51,8 +79,8 @@ impl SparseCholesky for Supernodal {
     }
 
     fn factorize(&mut self, matrix: &SymmetricMatrix) -> Result<(), NotPositiveDefinite> {
-        let symbolic = self
-            .symbolic
+        let analysis = self
+            .analysis
             .as_ref()
             .expect("analyze comes before factorize");
         let memory = self
@@ -60,7 +88,7 @@ impl SparseCholesky for Supernodal {
             .as_mut()
             .expect("analyze comes before factorize");
         let view = SparseColMatRef::new(structure(&matrix.pattern), &matrix.values);
-        let result = symbolic.factorize_numeric_llt(
+        let result = analysis.symbolic.factorize_numeric_llt(
             &mut self.values,
             view,
             Side::Lower,
@@ -71,15 +99,14 @@ impl SparseCholesky for Supernodal {
         );
         match result {
             Ok(_) => Ok(()),
-            Err(LltError::NonPositivePivot { index }) => Err(NotPositiveDefinite {
-                dof: self.new_to_old.get(index).map_or(0, |&dof| dof as usize),
-            }),
+            Err(LltError::NonPositivePivot { index }) => Err(analysis.failure(index)),
         }
     }
 
     fn solve(&mut self, rhs: &mut [f64]) {
-        let symbolic = self.symbolic.as_ref().expect("analyze comes before solve");
-        let n = self.new_to_old.len();
+        let analysis = self.analysis.as_ref().expect("analyze comes before solve");
+        let symbolic = &analysis.symbolic;
+        let n = analysis.new_to_old.len();
         let width = rhs.len() / n.max(1);
         let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(width, Par::Seq));
         LltRef::new(symbolic, &self.values).solve_in_place_with_conj(
@@ -91,7 +118,7 @@ impl SparseCholesky for Supernodal {
     }
 }
 
-fn structure(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, u32> {
+pub(super) fn structure(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, u32> {
     let n = pattern.num_rows();
     SymbolicSparseColMatRef::new_checked(n, n, pattern.column_starts(), None, pattern.row_indices())
 }
