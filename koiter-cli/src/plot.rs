@@ -109,29 +109,34 @@ fn chart(title: &str, lines: &[Value], is_over: bool) -> Chart {
         count => format!("{count} steps"),
     };
     let progress = if is_over { "" } else { " so far" };
+    let mut panels = vec![
+        panel(
+            "energy at the end of the step",
+            "J",
+            Style::Lines,
+            2.2,
+            by_name("energies"),
+        ),
+        panel("seconds a step", "s", Style::Stack, 2.0, by_name("seconds")),
+        panel(
+            "Newton iterations a step",
+            "",
+            Style::Stack,
+            1.0,
+            single("newton_iterations"),
+        ),
+        panel("contacts", "", Style::Stack, 1.0, single("contacts")),
+        gap,
+    ];
+    if lines.iter().any(|line| line["load_factor"].is_number()) {
+        let loads = single("load_factor");
+        panels.insert(0, panel("load factor", "", Style::Lines, 2.0, loads));
+    }
     Chart {
         title: format!("{title}: {steps}, {iterations} Newton iterations{progress}"),
         x_label: "time [s]".to_owned(),
         x_range: (0.0, times.iter().copied().fold(0.0, f64::max)),
-        panels: vec![
-            panel(
-                "energy at the end of the step",
-                "J",
-                Style::Lines,
-                2.2,
-                by_name("energies"),
-            ),
-            panel("seconds a step", "s", Style::Stack, 2.0, by_name("seconds")),
-            panel(
-                "Newton iterations a step",
-                "",
-                Style::Stack,
-                1.0,
-                single("newton_iterations"),
-            ),
-            panel("contacts", "", Style::Stack, 1.0, single("contacts")),
-            gap,
-        ],
+        panels,
         ..Chart::default()
     }
 }

@@ -115,6 +115,10 @@ impl<'a> ProbeWriter<'a> {
 struct State<'a>(&'a Simulation);
 
 impl Observable for State<'_> {
+    fn load_factor(&self) -> f64 {
+        self.0.load_factor().unwrap_or(0.0)
+    }
+
     fn positions(&self, shell: usize) -> Vec<Vec3> {
         self.0.shell_positions(shell).to_vec()
     }

@@ -57,7 +57,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
                 .restore(&checkpoint.snapshot)
                 .map_err(|error| Failure::input(error).with_help(beginning::BEGIN_AGAIN))?;
             // A run that went further than it is now to go is not cut back.
-            let end = num_steps.max(simulation.step_count());
+            let end = match simulation.has_ended() {
+                true => simulation.step_count(),
+                false => num_steps.max(simulation.step_count()),
+            };
             let recorder = Recorder::resume(lock, &loaded, &simulation, end, &checkpoint.totals)?;
             (simulation, recorder)
         }
@@ -168,6 +171,9 @@ fn advance(
 ) -> Result<(), Failure> {
     let mut simulation = simulation;
     for step in simulation.step_count() + 1..=num_steps {
+        if simulation.has_ended() {
+            break;
+        }
         let report = match simulation.step(recorder.scene.dt) {
             Ok(report) => StepReport {
                 time: decimal_time(report.step, recorder.scene.dt),
@@ -179,10 +185,11 @@ fn advance(
             }
         };
         let stop = interrupt.is_asked();
-        recorder.record(&simulation, &report, stop || step == num_steps)?;
+        let ended = step == num_steps || simulation.has_ended();
+        recorder.record(&simulation, &report, stop || ended)?;
         progress.show(&report);
         if stop {
-            recorder.summary.interrupted = step < num_steps;
+            recorder.summary.interrupted = !ended;
             break;
         }
     }

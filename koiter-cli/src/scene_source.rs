@@ -53,6 +53,14 @@ const SHIPPED: &[Shipped] = &[
         meshes: &[],
     },
     Shipped {
+        name: "hinged-roof",
+        text: include_str!("../../scenes/hinged-roof/scene.toml"),
+        meshes: &[(
+            "roof.obj",
+            include_bytes!("../../scenes/hinged-roof/roof.obj"),
+        )],
+    },
+    Shipped {
         name: "lateral-buckling",
         text: include_str!("../../scenes/lateral-buckling/scene.toml"),
         meshes: &[],

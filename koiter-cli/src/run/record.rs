@@ -30,6 +30,13 @@ pub(super) struct StatsLine<'a> {
     #[serde(serialize_with = "as_map")]
     seconds: &'a [(&'static str, f64)],
     #[serde(skip_serializing_if = "Option::is_none")]
+    load_factor: Option<f64>,
+    /// Whether an equilibrium on a path of loads is stable, and if not, in how many directions it falls.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stable: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    negative_eigenvalues: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     diagnosis: Option<&'a str>,
 }
 
@@ -48,6 +55,9 @@ impl<'a> StatsLine<'a> {
             kappa: report.kappa,
             energies: &report.energies,
             seconds: &report.seconds,
+            load_factor: report.load_factor,
+            stable: report.negative_eigenvalues.map(|count| count == 0),
+            negative_eigenvalues: report.negative_eigenvalues,
             diagnosis: report.diagnosis.as_deref(),
         }
     }

@@ -1,6 +1,7 @@
 //! Runs that are interrupted, killed or meet a full disk, and go on with `--resume`.
 
 mod kills;
+mod path;
 mod refusals;
 
 use std::fs;

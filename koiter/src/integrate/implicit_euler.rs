@@ -63,6 +63,7 @@ impl Integrator for ImplicitEuler {
             velocities,
             time: state.time + dt,
             step,
+            path: None,
         };
         system.finish(state, next, solved, report)
     }

@@ -188,7 +188,11 @@ impl System {
     }
 
     /// Exact second derivatives of a part of the energies, and the gradient of all.
-    fn second_derivatives(&mut self, q: &[f64], part: Part) -> (SymmetricMatrix, Vec<f64>) {
+    pub(super) fn second_derivatives(
+        &mut self,
+        q: &[f64],
+        part: Part,
+    ) -> (SymmetricMatrix, Vec<f64>) {
         let mut energies: Vec<&mut dyn Energy> = Vec::new();
         for energy in &mut self.elastic {
             energies.push(energy.as_mut());
@@ -205,7 +209,12 @@ impl System {
         let solved = self.layout.num_solved_dofs();
         let (still, mut coupling) = (vec![0.0; q.len() - solved], vec![0.0; solved]);
         for (index, energy) in energies.iter().enumerate() {
-            if (part == Part::Elastic) == (index < elastic) {
+            let is_wanted = match part {
+                Part::Elastic => index < elastic,
+                Part::Loads => index >= elastic,
+                Part::All => true,
+            };
+            if is_wanted {
                 let mut hessian = HessianBuilder {
                     matrix: &mut matrix,
                     layout: &self.layout,
@@ -271,11 +280,13 @@ impl System {
 
 /// Which energies give second derivatives.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Part {
+pub(super) enum Part {
     /// Membranes, bending, clamps.
     Elastic,
     /// What pushes from outside.
     Loads,
+    /// Both.
+    All,
 }
 
 fn add(sum: &mut SymmetricMatrix, factor: f64, matrix: &SymmetricMatrix) {

@@ -32,6 +32,7 @@ impl Integrator for LinearStatic {
             q,
             time: state.time + dt,
             step,
+            path: None,
         };
         Ok(StepReport {
             step,

@@ -1,17 +1,21 @@
 //! From one state to the next.
 
+mod arc_length;
 mod implicit_euler;
 mod linear;
 mod linear_static;
+mod load_pattern;
 mod offset_surface;
 mod quasi_static;
 mod report;
 mod rest_directors;
 mod system;
 
+pub use arc_length::{ArcLength, ArcLengthOptions, PathPoint};
 pub use implicit_euler::ImplicitEuler;
 pub use linear::{BucklingMode, LinearError, VibrationMode};
 pub use linear_static::LinearStatic;
+pub use load_pattern::LoadPattern;
 pub use offset_surface::OffsetSurfaces;
 pub use quasi_static::QuasiStatic;
 pub use report::{StepError, StepReport};

@@ -39,6 +39,7 @@ impl Integrator for QuasiStatic {
             velocities,
             time: state.time + dt,
             step,
+            path: None,
         };
         system.finish(state, next, solved, report)
     }

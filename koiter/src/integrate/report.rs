@@ -29,6 +29,10 @@ pub struct StepReport {
     pub kappa: f64,
     /// Intersections found after the step (always 0, or the step is an error).
     pub intersections: usize,
+    /// Arc length: the factor on the scheduled loads.
+    pub load_factor: Option<f64>,
+    /// Arc length: negative eigenvalues of the tangent; the equilibrium is stable if there are none.
+    pub negative_eigenvalues: Option<usize>,
     /// For a step that did not converge: which energy and elements resist, what limited the step, what to try.
     pub diagnosis: Option<String>,
 }
@@ -94,6 +98,16 @@ pub enum StepError {
         energy: String,
         /// The element that is at fault.
         element: String,
+    },
+    /// No further equilibrium was found along the path, however short the arc.
+    #[error("step {step}: the path is lost at a load factor of {load_factor:.6}: {reason}")]
+    PathLost {
+        /// Step number.
+        step: usize,
+        /// Load factor of the last equilibrium.
+        load_factor: f64,
+        /// What went wrong with the last arc, and what to try.
+        reason: String,
     },
     /// The accepted state has surfaces that intersect: a bug, never silent.
     #[error("surfaces intersect after step {step}: {details}")]

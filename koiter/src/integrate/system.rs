@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use super::arc_length::PathPoint;
 use super::offset_surface::OffsetSurfaces;
 use super::report::{StepError, StepReport};
 use crate::Vec3;
@@ -35,6 +36,8 @@ pub struct State {
     pub time: f64,
     /// Steps taken.
     pub step: usize,
+    /// Where the state stands on a path that is followed by arc length.
+    pub path: Option<PathPoint>,
 }
 
 /// What is prescribed at the end of a step.

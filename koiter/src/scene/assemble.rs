@@ -1,5 +1,6 @@
 //! From a checked model to energies, masses and contact.
 
+use super::arc_length::ArcLengthError;
 use super::clamps::Clamps;
 use super::composition::CompositionError;
 use super::elastic::{Elastic, rest_surface};
@@ -72,6 +73,9 @@ pub enum BuildError {
         /// Name of the shell.
         shell: String,
     },
+    /// A model in which no path of loads can be followed.
+    #[error(transparent)]
+    ArcLength(#[from] ArcLengthError),
     /// Something touches or intersects at the start.
     #[error(transparent)]
     Start(#[from] StartError),

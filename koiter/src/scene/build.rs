@@ -1,5 +1,6 @@
 //! From what was typed to a model that can be simulated: meshes read, selections resolved, plausibility checked.
 
+mod arc_length;
 mod composition;
 mod loads;
 mod symmetry;
@@ -70,6 +71,7 @@ impl Scene {
         };
         let model = builder.model().map_err(place)?;
         memory::check_model(&model, memory).map_err(place)?;
+        arc_length::check_arc_length(&model, &file.spec).map_err(place)?;
         let probes = builder.probes(&model).map_err(place)?;
         let spec = &file.spec;
         let frame_steps = match (spec.output.every_steps, spec.output.every_seconds) {
@@ -149,6 +151,9 @@ impl Builder<'_> {
                     .unwrap_or(solver.displacement_tolerance),
                 max_iterations: spec.solver.max_iterations.unwrap_or(solver.max_iterations),
                 smallest_step: spec.solver.smallest_step.unwrap_or(solver.smallest_step),
+                first_arc_length: spec.solver.first_arc_length,
+                largest_arc_length: spec.solver.largest_arc_length,
+                last_load_factor: (spec.solver.last_load_factor).unwrap_or(solver.last_load_factor),
             },
             integrator: spec.integrator,
         })
@@ -300,6 +305,7 @@ impl Builder<'_> {
         let path = |key: &str| format!("probe.{}.{key}", probe.name);
         let target = match probe.quantity {
             ProbeQuantity::Energy => ProbeTarget::Energy(probe.energy.clone()),
+            ProbeQuantity::LoadFactor => ProbeTarget::LoadFactor,
             ProbeQuantity::Reaction => {
                 let name = probe.constraint.as_deref().unwrap_or_default();
                 let mut constraints = self.spec.constraint.iter().enumerate();

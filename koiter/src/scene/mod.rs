@@ -4,6 +4,7 @@
 //! [`MeshSource`], resolves selections and gives a checked [`model::Model`]. A mistake is a [`SceneError`] with a
 //! message, a dotted path, a place in the text and a help.
 
+mod arc_length;
 mod assemble;
 mod bending_models;
 mod clamps;
@@ -53,6 +54,7 @@ pub mod spec;
 mod warnings;
 
 pub use self::{
+    arc_length::ArcLengthError,
     assemble::BuildError,
     bending_models::BendingModelInfo,
     composition::CompositionError,

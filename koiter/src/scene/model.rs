@@ -271,6 +271,12 @@ pub struct SolverOptions {
     pub max_iterations: usize,
     /// Statics: a step that does not converge is cut in half until its parts are this share of it; 1: never.
     pub smallest_step: f64,
+    /// Arc length: root mean square displacement of the first step [m]; `None`: a tenth of the smallest thickness.
+    pub first_arc_length: Option<f64>,
+    /// Arc length: largest root mean square displacement of a step [m]; `None`: ten times the first.
+    pub largest_arc_length: Option<f64>,
+    /// Arc length: the load factor at which the path ends when it rises to it.
+    pub last_load_factor: f64,
 }
 
 impl Default for SolverOptions {
@@ -280,6 +286,9 @@ impl Default for SolverOptions {
             displacement_tolerance: 1e-7,
             max_iterations: 200,
             smallest_step: 1.0 / 64.0,
+            first_arc_length: None,
+            largest_arc_length: None,
+            last_load_factor: 1.0,
         }
     }
 }
@@ -300,6 +309,9 @@ pub enum IntegratorKind {
     QuasiStatic,
     /// Small displacements: each step is the response of the structure as it is at the start of the step.
     LinearStatic,
+    /// A path of static equilibria through limit points: one step is one point, its load factor is the time of the
+    /// schedules of loads.
+    ArcLength,
 }
 
 /// Everything a [`super::Simulation`] is made of; by default nothing, without gravity.

@@ -33,6 +33,8 @@ pub enum ProbeTarget {
     Energy(Option<String>),
     /// Total force of a constraint on its vertices [N], by its index.
     Reaction(usize),
+    /// The factor on scheduled loads.
+    LoadFactor,
 }
 
 /// The state a probe looks at.
@@ -45,6 +47,8 @@ pub trait Observable {
     fn energies(&self) -> Vec<(&'static str, f64)>;
     /// Total force that a constraint exerts on its vertices [N].
     fn reaction(&self, constraint: usize) -> Vec3;
+    /// The factor on scheduled loads; 0 without arc length.
+    fn load_factor(&self) -> f64;
 }
 
 impl Probe {
@@ -69,6 +73,7 @@ impl Probe {
             } => self.measure_vertices(*quantity, state, *shell, vertices, start),
             ProbeTarget::Energy(name) => vec![total_energy(&state.energies(), name.as_deref())],
             ProbeTarget::Reaction(constraint) => self.components(state.reaction(*constraint)),
+            ProbeTarget::LoadFactor => vec![state.load_factor()],
         }
     }
 
@@ -97,6 +102,7 @@ impl Probe {
         !matches!(
             self.target,
             ProbeTarget::Energy(_)
+                | ProbeTarget::LoadFactor
                 | ProbeTarget::Vertices {
                     quantity: ProbeQuantity::Lowest | ProbeQuantity::Highest,
                     ..
@@ -146,6 +152,9 @@ mod tests {
         }
         fn reaction(&self, _: usize) -> Vec3 {
             2.0 * Vec3::x()
+        }
+        fn load_factor(&self) -> f64 {
+            0.5
         }
     }
 

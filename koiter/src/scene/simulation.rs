@@ -1,5 +1,6 @@
 //! A running simulation.
 
+use super::arc_length;
 use super::assemble::{Assembly, BuildError, assemble};
 use super::clamps::Clamps;
 use super::display::{PartTopology, tessellate};
@@ -10,8 +11,8 @@ use crate::Vec3;
 use crate::assembly::{Assembled, Dof, Energy};
 use crate::energy::bending::ExtraUnknowns;
 use crate::integrate::{
-    ImplicitEuler, Integrator, LinearStatic, Prescribed, QuasiStatic, ShellPart, State, StepError,
-    StepReport, System,
+    ImplicitEuler, Integrator, LinearStatic, LoadPattern, Prescribed, QuasiStatic, ShellPart,
+    State, StepError, StepReport, System,
 };
 
 /// A model with its state, advanced step by step.
@@ -27,6 +28,8 @@ pub struct Simulation {
     pub(super) momentum_rates: Vec<f64>,
     /// The share of a static step that is tried first.
     pub(super) share: f64,
+    /// What the load factor of arc length multiplies.
+    pub(super) load_pattern: Option<LoadPattern>,
 }
 
 /// Sizes of a simulation.
@@ -83,6 +86,11 @@ impl Simulation {
                 displacement_tolerance: model.solver.displacement_tolerance,
             }),
             IntegratorKind::LinearStatic => Box::new(LinearStatic),
+            IntegratorKind::ArcLength => Box::new(arc_length::integrator(&model)?),
+        };
+        let load_pattern = match model.integrator {
+            IntegratorKind::ArcLength => Some(arc_length::load_pattern(&model)?),
+            _ => None,
         };
         let parts = tessellate(&model);
         let state = State {
@@ -90,6 +98,7 @@ impl Simulation {
             velocities,
             time: 0.0,
             step: 0,
+            path: None,
         };
         let momentum_rates = vec![0.0; system.masses.len()];
         Ok(Self {
@@ -102,6 +111,7 @@ impl Simulation {
             parts,
             momentum_rates,
             share: 1.0,
+            load_pattern,
         })
     }
 
@@ -120,9 +130,9 @@ impl Simulation {
     fn step_in_pool(&mut self, dt: f64) -> Result<StepReport, StepError> {
         match self.model.integrator {
             IntegratorKind::QuasiStatic => self.step_in_parts(dt),
-            IntegratorKind::ImplicitEuler | IntegratorKind::LinearStatic => {
-                self.step_to(self.state.time + dt, dt)
-            }
+            IntegratorKind::ImplicitEuler
+            | IntegratorKind::LinearStatic
+            | IntegratorKind::ArcLength => self.step_to(self.state.time + dt, dt),
         }
     }
 
@@ -156,6 +166,10 @@ impl Simulation {
 
     /// Gravity, loads and clamps as they are at a time [s].
     pub(super) fn apply_schedules(&mut self, time: f64) {
+        if let Some(pattern) = &self.load_pattern {
+            pattern.apply(self.load_factor().unwrap_or(0.0), &mut self.system);
+            return;
+        }
         if let Some(scale) = &self.model.gravity_scale {
             self.system.gravity.acceleration = self.model.gravity * scale.at(time);
         }
@@ -213,6 +227,18 @@ impl Simulation {
     /// Simulated time [s].
     pub fn time(&self) -> f64 {
         self.state.time
+    }
+
+    /// The factor on scheduled loads, where they are followed by arc length.
+    pub fn load_factor(&self) -> Option<f64> {
+        self.load_pattern.as_ref()?;
+        Some((self.state.path.as_ref()).map_or(0.0, |point| point.load_factor))
+    }
+
+    /// Whether a path of loads has come to its end: further steps would leave it.
+    pub fn has_ended(&self) -> bool {
+        let last = self.model.solver.last_load_factor;
+        self.load_factor().is_some_and(|factor| factor >= last)
     }
 
     /// Steps taken.

@@ -2,14 +2,14 @@
 
 use super::simulation::Simulation;
 use crate::assembly::Energy;
-use crate::integrate::State;
+use crate::integrate::{PathPoint, State};
 use crate::solve::{LinearWorkspace, WorkspaceHistory};
 
 /// Everything of a simulation that its model does not say: a new simulation of the same model, restored from it, takes
 /// the same steps as the old one, bit for bit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot {
-    /// Positions, edge angles, their rates, time, number of steps.
+    /// Positions, edge angles, their rates, time, number of steps, place on a path of loads.
     pub state: State,
     /// Mass times acceleration of the last step [N], for reactions.
     pub momentum_rates: Vec<f64>,
@@ -95,10 +95,33 @@ impl Simulation {
         if !(snapshot.share > 0.0 && snapshot.share <= 1.0) {
             return Err(format!("its share of a step is {}", snapshot.share));
         }
+        self.check_path(state.path.as_ref())?;
         match (&self.system.contact, snapshot.kappa) {
             (None, None) => Ok(()),
             (Some(_), Some(kappa)) if kappa.is_finite() && kappa > 0.0 => Ok(()),
             (_, kappa) => Err(format!("its barrier stiffness is {kappa:?}")),
+        }
+    }
+
+    /// Other integrators know no path; before the first step there is none.
+    fn check_path(&self, point: Option<&PathPoint>) -> Result<(), String> {
+        let Some(point) = point else {
+            return Ok(());
+        };
+        let numbers = [point.load_factor, point.arc_length];
+        let mut values = numbers.iter().chain(&point.increment);
+        match () {
+            () if self.load_pattern.is_none() => {
+                Err("it is on a path by arc length, the scene is not".into())
+            }
+            () if point.increment.len() != self.state.q.len() => {
+                let (given, needed) = (point.increment.len(), self.state.q.len());
+                Err(format!("its increment has {given} values for {needed}"))
+            }
+            () if point.arc_length <= 0.0 || values.any(|value| !value.is_finite()) => {
+                Err("its place on the path is not finite".into())
+            }
+            () => Ok(()),
         }
     }
 }

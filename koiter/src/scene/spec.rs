@@ -341,6 +341,15 @@ pub struct SolverSpec {
     /// Statics: a step that does not converge is cut in half until its parts are this share of it; 1: never.
     #[serde(default)]
     pub smallest_step: Option<f64>,
+    /// Arc length: root mean square displacement of the first step [m]; default: a tenth of the smallest thickness.
+    #[serde(default)]
+    pub first_arc_length: Option<f64>,
+    /// Arc length: largest root mean square displacement of a step [m]; default: ten times the first.
+    #[serde(default)]
+    pub largest_arc_length: Option<f64>,
+    /// Arc length: the load factor at which the path ends when it rises to it; default: 1.
+    #[serde(default)]
+    pub last_load_factor: Option<f64>,
 }
 
 /// `[[probe]]`.
@@ -388,6 +397,8 @@ pub enum ProbeQuantity {
     Energy,
     /// Force on a constraint [N].
     Reaction,
+    /// The factor on scheduled loads, with integrator = "arc-length".
+    LoadFactor,
 }
 
 /// A coordinate.

@@ -5,6 +5,7 @@
 //! list of bodies: text name, u64 fingerprint of the mesh
 //! u64 step  f64 time  list of f64: q, its rates, momentum rates
 //! u8 1 with contact, else 0  f64 barrier stiffness
+//! u8 1 on a path by arc length, else 0  f64 load factor  f64 arc length  list of f64: last increment
 //! list of f64: what the directors under moments have turned  f64 share of a step
 //! list of u32 × 2: couplings by contacts  list of u32: elimination order  u64 factor entries when it was made
 //! u64 × 3 Newton iterations, steps not converged, intersections  f64 × 2 smallest gap, seconds
@@ -19,14 +20,14 @@ use std::path::Path;
 use super::CHECKPOINT;
 use super::error::{ResultError, read_if_there};
 use super::topology_file::checked_body;
-use crate::integrate::State;
+use crate::integrate::{PathPoint, State};
 use crate::io::bytes::{ByteReader, Endian};
 use crate::io::checksum::crc32;
 use crate::scene::Snapshot;
 use crate::solve::WorkspaceHistory;
 
 const MAGIC: &[u8; 8] = b"KOITERCP";
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// All that is needed to go on with a run to the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,6 +139,7 @@ impl Checkpoint {
         out.numbers(&snapshot.momentum_rates);
         out.0.push(snapshot.kappa.is_some().into());
         out.f64(snapshot.kappa.unwrap_or(0.0));
+        out.path(snapshot.state.path.as_ref());
         out.numbers(&snapshot.turned);
         out.f64(snapshot.share);
         let WorkspaceHistory {
@@ -195,6 +197,13 @@ impl Bytes {
     fn numbers(&mut self, values: &[f64]) {
         self.list(values, |out, value| out.f64(*value));
     }
+
+    fn path(&mut self, point: Option<&PathPoint>) {
+        self.0.push(point.is_some().into());
+        self.f64(point.map_or(0.0, |point| point.load_factor));
+        self.f64(point.map_or(0.0, |point| point.arc_length));
+        self.numbers(point.map_or(&[], |point| &point.increment));
+    }
 }
 
 fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
@@ -203,15 +212,17 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
     let bodies = list(reader, 12, |reader| Some((text(reader)?, reader.u64()?)))?;
     let step = usize::try_from(reader.u64()?).ok()?;
     let time = reader.f64()?;
-    let state = State {
+    let mut state = State {
         q: numbers(reader)?,
         velocities: numbers(reader)?,
         time,
         step,
+        path: None,
     };
     let momentum_rates = numbers(reader)?;
     let has_contact = reader.u8()?;
     let kappa = reader.f64()?;
+    state.path = path(reader)?;
     let turned = numbers(reader)?;
     let share = reader.f64()?;
     let solver = WorkspaceHistory {
@@ -265,6 +276,17 @@ fn list<'a, T>(
 
 fn numbers(reader: &mut ByteReader) -> Option<Vec<f64>> {
     list(reader, 8, ByteReader::f64)
+}
+
+/// `None` where the bytes end, `Some(None)` where there is no path.
+fn path(reader: &mut ByteReader) -> Option<Option<PathPoint>> {
+    let is_there = reader.u8()?;
+    let point = PathPoint {
+        load_factor: reader.f64()?,
+        arc_length: reader.f64()?,
+        increment: numbers(reader)?,
+    };
+    Some((is_there == 1).then_some(point))
 }
 
 #[cfg(test)]

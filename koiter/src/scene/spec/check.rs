@@ -11,6 +11,7 @@ use super::{
 };
 use crate::scene::document::suggest;
 use crate::scene::error::{SceneError, SceneErrorKind as Kind};
+use crate::scene::model::IntegratorKind;
 use crate::scene::schedule::{MotionSpec, Schedule};
 
 pub(super) type Checked = Result<(), SceneError>;
@@ -297,8 +298,13 @@ fn check_probe(path: &str, probe: &ProbeSpec, spec: &SceneSpec) -> Checked {
     let (needed, what) = match probe.quantity {
         ProbeQuantity::Energy => (None, "an energy"),
         ProbeQuantity::Reaction => (Some("constraint"), "a reaction"),
+        ProbeQuantity::LoadFactor => (None, "a load factor"),
         _ => (Some("shell"), "this quantity"),
     };
+    if probe.quantity == ProbeQuantity::LoadFactor && spec.integrator != IntegratorKind::ArcLength {
+        let message = "there is no load factor without integrator = \"arc-length\"".to_owned();
+        return Err(error(Kind::Conflict, &at("quantity"), message));
+    }
     let keys = [
         ("shell", probe.shell.is_some()),
         ("constraint", probe.constraint.is_some()),
@@ -375,6 +381,9 @@ fn check_contact_and_solver(spec: &SceneSpec) -> Checked {
         "m",
     )?;
     optional_positive("solver.smallest_step", solver.smallest_step, "")?;
+    optional_positive("solver.first_arc_length", solver.first_arc_length, "m")?;
+    optional_positive("solver.largest_arc_length", solver.largest_arc_length, "m")?;
+    optional_positive("solver.last_load_factor", solver.last_load_factor, "")?;
     if let Some(share) = solver.smallest_step.filter(|share| *share > 1.0) {
         let message = format!("smallest_step is a share of a step, at most 1, but it is {share}");
         return Err(error(Kind::OutOfRange, "solver.smallest_step", message));

@@ -11,6 +11,11 @@ fn checkpoint() -> Checkpoint {
                 velocities: vec![0.0, -0.0, f64::MIN_POSITIVE],
                 time: 1.0 / 3.0,
                 step: 12,
+                path: Some(PathPoint {
+                    load_factor: -0.5,
+                    arc_length: 1e-3,
+                    increment: vec![0.25, 0.0, -1.0],
+                }),
             },
             momentum_rates: vec![1.5],
             kappa: Some(1e5),
@@ -39,6 +44,7 @@ fn what_was_written_is_read_back() {
         written
     );
     written.snapshot.kappa = None;
+    written.snapshot.state.path = None;
     assert_eq!(
         Checkpoint::from_bytes(&written.to_bytes()).unwrap(),
         written
@@ -78,7 +84,7 @@ fn lengths_are_not_trusted_even_under_an_honest_checksum() {
 #[test]
 fn another_format_is_named() {
     let mut bytes = checkpoint().to_bytes();
-    bytes[8] = 3;
+    bytes[8] = 77;
     let error = Checkpoint::from_bytes(&bytes).unwrap_err().to_string();
-    assert!(error.contains("version 3"), "{error}");
+    assert!(error.contains("version 77"), "{error}");
 }
