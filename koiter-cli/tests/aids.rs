@@ -162,15 +162,14 @@ fn materials_and_models_are_those_of_scenes() {
     let all: Value = serde_json::from_str(&done(&["models", "--json"])).unwrap();
     assert_eq!(all["default"], "bac");
     for model in all["models"].as_array().unwrap() {
-        let bending = format!("shell.strip.bending={}", model["name"].as_str().unwrap());
-        done(&[
-            "check",
-            "cantilever",
-            "--set",
-            "resolution=tiny",
-            "--set",
-            &bending,
-        ]);
+        let name = model["name"].as_str().unwrap();
+        let bending = format!("shell.strip.bending={name}");
+        let scene = ["cantilever", "--set", "resolution=tiny", "--set", &bending];
+        let output = koiter(&[&["check"], &scene[..]].concat());
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{name}: {errors}");
+        // The one that is here for study only says so.
+        assert_eq!(errors.is_empty(), name != "ds-2nd", "{name}: {errors}");
     }
     assert!(
         done(&["models"]).contains("(the default)")
