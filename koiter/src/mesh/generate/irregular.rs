@@ -63,7 +63,11 @@ pub fn irregular(
             .with_max_additional_vertices(10 * expected_faces as usize + 1000),
     );
 
-    let (positions, faces) = in_bands(&triangulation, spacing);
+    let points = triangulation.vertices().map(|v| v.position().into());
+    // Spade's faces are counter-clockwise.
+    let faces = triangulation.inner_faces();
+    let faces = faces.map(|f| f.vertices().map(|v| v.fix().index() as u32));
+    let (positions, faces) = in_bands(points, faces, spacing);
     let surface = build(positions, faces)?;
     let min_angle_degrees = surface.min_angle().to_degrees();
     // The refinement compares radius and edge, this an angle: allow for round-off.
@@ -140,22 +144,15 @@ fn scatter_inside(width: f64, depth: f64, spacing: f64, seed: u64, points: &mut 
     }
 }
 
-/// Vertices and faces ordered in bands along x, so that neighbours in space are near in memory.
+/// Vertices and counter-clockwise faces ordered in bands along x, so that neighbours in space are near in memory.
 pub(super) fn in_bands(
-    triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>,
+    points: impl Iterator<Item = [f64; 2]>,
+    faces: impl Iterator<Item = [u32; 3]>,
     band: f64,
 ) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let mut order: Vec<(i64, f64, f64, usize)> = triangulation
-        .vertices()
-        .map(|vertex| {
-            let point = vertex.position();
-            (
-                (point.y / band).floor() as i64,
-                point.x,
-                point.y,
-                vertex.fix().index(),
-            )
-        })
+    let mut order: Vec<(i64, f64, f64, usize)> = points
+        .enumerate()
+        .map(|(index, [x, y])| ((y / band).floor() as i64, x, y, index))
         .collect();
     order.sort_by(|a, b| {
         a.0.cmp(&b.0)
@@ -168,13 +165,10 @@ pub(super) fn in_bands(
         new_index[old] = new as u32;
         positions.push(Vec3::new(x, y, 0.0));
     }
-    let mut faces: Vec<[u32; 3]> = triangulation
-        .inner_faces()
+    let mut faces: Vec<[u32; 3]> = faces
         .map(|face| {
-            // Spade's faces are counter-clockwise; start at the smallest index.
-            let [a, b, c] = face
-                .vertices()
-                .map(|vertex| new_index[vertex.fix().index()]);
+            // Start at the smallest index.
+            let [a, b, c] = face.map(|vertex| new_index[vertex as usize]);
             if a < b && a < c {
                 [a, b, c]
             } else if b < c {

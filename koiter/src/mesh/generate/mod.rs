@@ -9,6 +9,7 @@ mod irregular;
 mod patch;
 mod random_sphere;
 mod rectangle;
+mod refinement;
 mod revolution;
 mod rings;
 mod solids;
