@@ -140,12 +140,25 @@ mod tests {
         let text = with_all_keys(&text_of(Template::Drape));
         let schema = koiter::scene::json_schema();
         let tables = [
-            (&schema["properties"], &["variants"][..]),
+            // Loads and planes of symmetry are for engineers: the scenes rolled-strip and hinged-roof show them.
+            (&schema["properties"], &["variants", "load", "symmetry"][..]),
             // Names for shapes that are not the sheet's start, and for experts.
-            (&schema["$defs"]["ShellSpec"]["properties"], &["rest_mesh"]),
+            (
+                &schema["$defs"]["ShellSpec"]["properties"],
+                &["rest_mesh", "rest_stretch", "rest_curvature", "faces"],
+            ),
             (&schema["$defs"]["ConstraintSpec"]["properties"], &[]),
             (&schema["$defs"]["ContactSpec"]["properties"], &["kappa"]),
-            (&schema["$defs"]["SolverSpec"]["properties"], &[]),
+            // Of statics.
+            (
+                &schema["$defs"]["SolverSpec"]["properties"],
+                &[
+                    "smallest_step",
+                    "first_arc_length",
+                    "largest_arc_length",
+                    "last_load_factor",
+                ],
+            ),
             (&schema["$defs"]["OutputSpec"]["properties"], &["fields"]),
         ];
         for (properties, left_out) in tables {

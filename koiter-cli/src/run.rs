@@ -185,7 +185,11 @@ fn advance(
             }
         };
         let stop = interrupt.is_asked();
-        let ended = step == num_steps || simulation.has_ended();
+        if simulation.has_ended() {
+            // A path is over where its last load is reached, however many steps were planned.
+            recorder.summary.planned_steps = step;
+        }
+        let ended = step == recorder.summary.planned_steps;
         recorder.record(&simulation, &report, stop || ended)?;
         progress.show(&report);
         if stop {

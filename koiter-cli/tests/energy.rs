@@ -72,7 +72,13 @@ fn directors_that_were_printed_give_the_same_energy_when_read() {
         assert_eq!(entry["director_gradient"].as_array().unwrap().len(), size);
         let file = folder.write("d.json", &entry["directors"].to_string());
         let again = json(&[&meshes[..], &["--model", name, "--directors", &file]].concat());
-        assert_eq!(again["bending"][name]["energy"], entry["energy"], "{name}");
+        let [printed, read] =
+            [entry, &again["bending"][name]].map(|e| e["energy"].as_f64().unwrap());
+        // Directors of vertices are scaled to length 1 again, which may move their last bit.
+        assert!(
+            (read / printed - 1.0).abs() < 1e-14,
+            "{name}: {read} {printed}"
+        );
         let zero = json(&[&meshes[..], &["--model", name, "--directors", "zero"]].concat());
         assert!(
             zero["bending"][name]["energy"].as_f64() > entry["energy"].as_f64(),

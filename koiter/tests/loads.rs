@@ -324,14 +324,10 @@ fn a_step_that_does_not_converge_is_taken_in_parts() {
     let reference = mean_displacement(&solve(model.clone(), 1), &tip);
     assert!(reference.z < -0.4, "{reference:?}");
     let mut hurried = |smallest_step: f64| {
-        model.solver.max_iterations = 12;
+        model.solver.max_iterations = 30;
         model.solver.smallest_step = smallest_step;
         let mut simulation = Simulation::new(model.clone()).unwrap();
         let report = simulation.step(1.0).unwrap();
-        println!(
-            "{smallest_step} {} {}",
-            report.converged, report.newton_iterations
-        );
         assert_eq!((report.step, report.time, report.dt), (1, 1.0, 1.0));
         (
             report.converged,
