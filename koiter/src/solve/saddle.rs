@@ -131,16 +131,9 @@ fn negative_direction(
     gradient: &[f64],
 ) -> Option<Vec<f64>> {
     workspace.factorize().err()?;
-    let diagonal = |workspace: &LinearWorkspace| -> Vec<f64> {
-        let matrix = workspace.matrix.as_ref().expect("the matrix was assembled");
-        let positions = matrix.pattern.diagonal_positions().iter();
-        positions.map(|&p| matrix.values[p as usize]).collect()
-    };
-    let before = diagonal(workspace);
-    workspace.factorize_shifted(problem.is_fixed).ok()?;
-    let shift: Vec<f64> = (diagonal(workspace).iter().zip(&before))
-        .map(|(shifted, original)| shifted - original)
-        .collect();
+    // Barely definite, so that inverse iteration turns to v at once: with a hundred times the least shift, a slender plate
+    // of 1104 triangles had not shown its negative curvature after 60 turns, and stayed plane at twice its critical load.
+    let shift = workspace.factorize_barely(problem.is_fixed)?;
     let matrix = workspace.matrix.as_ref().expect("the matrix was assembled");
     // Any start with a share of every direction: the same one each time, so that runs can be repeated.
     let mut v: Vec<f64> = (0..shift.len())

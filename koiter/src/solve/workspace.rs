@@ -33,6 +33,12 @@ pub struct LinearWorkspace {
 /// Shifts to try, relative to the diagonal, when a factorisation fails.
 const SHIFTS: [f64; 7] = [1e-8, 1e-6, 1e-4, 1e-2, 1.0, 4.0, 1e2];
 
+/// Below this a multiple of the diagonal is lost in its round-off.
+const LEAST_SHIFT: f64 = 1e-14;
+
+/// Halvings, in logarithms, of the bracket of the least shift: from a factor of 100 to one of 1.02.
+const SHIFT_BISECTIONS: usize = 8;
+
 /// Contacts make the factor fuller than the order was made for; beyond this ratio a new order pays.
 const REORDER_GROWTH: f64 = 1.5;
 
@@ -178,22 +184,59 @@ impl LinearWorkspace {
         let Err(mut failure) = self.factorize() else {
             return Ok(0);
         };
-        let matrix = self.matrix.as_mut().expect("the matrix was assembled");
-        let pattern = Arc::clone(&matrix.pattern);
-        let positions = pattern.diagonal_positions();
-        let diagonal: Vec<f64> = (positions.iter())
-            .map(|&p| matrix.values[p as usize])
-            .collect();
+        let diagonal = self.diagonal();
         for (attempt, shift) in SHIFTS.iter().enumerate() {
-            for (dof, &position) in positions.iter().enumerate().filter(|(i, _)| !is_fixed[*i]) {
-                // An exact Hessian may have negative entries there.
-                matrix.values[position as usize] = diagonal[dof] + shift * diagonal[dof].abs();
-            }
-            match self.factor.factorize(matrix) {
+            match self.factorize_with(&diagonal, *shift, is_fixed) {
                 Ok(()) => return Ok(attempt + 1),
-                Err(error) => failure = error.dof,
+                Err(dof) => failure = dof,
             }
         }
         Err(failure)
+    }
+
+    /// Factorises an indefinite matrix with nearly the least multiple of the diagonal that makes it definite, and returns
+    /// what was added to the diagonal; `None` if no multiple is enough.
+    pub(super) fn factorize_barely(&mut self, is_fixed: &[bool]) -> Option<Vec<f64>> {
+        let diagonal = self.diagonal();
+        let enough = (SHIFTS.iter())
+            .position(|shift| self.factorize_with(&diagonal, *shift, is_fixed).is_ok())?;
+        let mut large = SHIFTS[enough];
+        let mut small = match enough {
+            0 => LEAST_SHIFT,
+            _ => SHIFTS[enough - 1],
+        };
+        for _ in 0..SHIFT_BISECTIONS {
+            let middle = (small * large).sqrt();
+            match self.factorize_with(&diagonal, middle, is_fixed) {
+                Ok(()) => large = middle,
+                Err(_) => small = middle,
+            }
+        }
+        self.factorize_with(&diagonal, large, is_fixed).ok()?;
+        let shifted = self.diagonal().into_iter().zip(&diagonal);
+        Some(shifted.map(|(after, before)| after - before).collect())
+    }
+
+    fn diagonal(&self) -> Vec<f64> {
+        let matrix = self.matrix.as_ref().expect("the matrix was assembled");
+        let positions = matrix.pattern.diagonal_positions().iter();
+        positions.map(|&p| matrix.values[p as usize]).collect()
+    }
+
+    /// Factorises with `diagonal + shift |diagonal|` for the diagonal of free unknowns: an exact Hessian may have negative
+    /// entries there.
+    fn factorize_with(
+        &mut self,
+        diagonal: &[f64],
+        shift: f64,
+        is_fixed: &[bool],
+    ) -> Result<(), usize> {
+        let matrix = self.matrix.as_mut().expect("the matrix was assembled");
+        let pattern = Arc::clone(&matrix.pattern);
+        let positions = pattern.diagonal_positions().iter().enumerate();
+        for (dof, &position) in positions.filter(|(dof, _)| !is_fixed[*dof]) {
+            matrix.values[position as usize] = diagonal[dof] + shift * diagonal[dof].abs();
+        }
+        self.factor.factorize(matrix).map_err(|error| error.dof)
     }
 }
