@@ -13,7 +13,7 @@ use super::workspace::LinearWorkspace;
 use crate::assembly::{HessianBuilder, NodeId, PsdProjection};
 
 /// Inverse iterations before the curvature counts as zero up to round-off. Each turns the vector towards v by the ratio
-/// of shifted eigenvalues; 3 to 10 were enough for buckling plates and for directors on creases.
+/// of shifted eigenvalues, which is large, for the shift is hardly more than enough.
 const MAX_TURNS: usize = 60;
 
 /// Doublings of the way along v: from 10 tolerances to far beyond any scene.

@@ -12,7 +12,8 @@ pub struct Refinement {
 }
 
 /// An error falls by a power law if it falls at least this fast in V; errors of first order in the edge length have −0.5.
-/// Those that do not converge scatter about 0: on the shapes of the benchmark between −0.17 and +0.2.
+/// Those that do not converge mostly scatter about 0, but may fall as fast where their error only passes zero: hence the
+/// other two conditions of [`Refinement::converges`].
 const SLOWEST_RATE: f64 = -0.25;
 
 /// Above this relative error nothing is said to converge, however it falls.
