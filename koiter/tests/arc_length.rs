@@ -38,6 +38,7 @@ fn held(vertices: Vec<VertexId>, axes: [bool; 3]) -> Constraint {
         axes,
         motion: Motion::default(),
         clamp_directors: false,
+        from: 0.0,
         until: f64::INFINITY,
     }
 }
@@ -200,7 +201,7 @@ fn the_hinged_roof_snaps_through_as_under_a_prescribed_displacement() {
             times: times.collect(),
             values: std::iter::once(Vec3::zeros()).chain(heights).collect(),
         }),
-        rotation: None,
+        ..Motion::default()
     };
     pushed.constraints.push(Constraint {
         motion,

@@ -208,6 +208,7 @@ fn a_rising_ball_lifts_a_cloth_whose_corners_are_held() {
         axes: [true; 3],
         motion: Motion::default(),
         clamp_directors: false,
+        from: 0.0,
         until: f64::INFINITY,
     });
     let (simulation, _) = run(model, 20, 0.02);
@@ -255,6 +256,7 @@ fn a_fast_shot_does_not_tunnel() {
             axes: [true, true, false],
             motion: Motion::default(),
             clamp_directors: false,
+            from: 0.0,
             until: f64::INFINITY,
         });
         let (simulation, _) = run(model, 5, 0.02);

@@ -102,6 +102,7 @@ fn hang(surface: Surface, bending: BendingModel, gamma: f64) -> [f64; 2] {
         axes: [true; 3],
         motion: Motion::default(),
         clamp_directors: true,
+        from: 0.0,
         until: f64::INFINITY,
     };
     let model = Model {

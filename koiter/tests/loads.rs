@@ -49,6 +49,7 @@ fn held(vertices: Vec<VertexId>, axes: [bool; 3], clamp_directors: bool) -> Cons
         axes,
         motion: Motion::default(),
         clamp_directors,
+        from: 0.0,
         until: f64::INFINITY,
     }
 }

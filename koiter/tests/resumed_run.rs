@@ -2,10 +2,10 @@
 #![cfg(feature = "serde")]
 
 use koiter::integrate::StepReport;
-use koiter::scene::{NoFiles, Scene, SceneFile, Simulation, Snapshot};
+use koiter::scene::{Anchor, NoFiles, Scene, SceneFile, Simulation, Snapshot};
 
 /// All that has a memory: self-contact, friction, a ball that moves, a mesh that turns, a plane, a clamp that is let
-/// go, gravity that changes, directors.
+/// go and one that takes hold, gravity that changes, directors.
 const SCENE: &str = r#"
 time = { end = 0.6, dt = 0.02 }
 gravity_scale = [[0.0, 1.0], [0.3, 1.5], [0.6, 0.5]]
@@ -39,6 +39,15 @@ shell = "cloth"
 select.box = { min = [-1, 0.06, -1] }
 clamp = true
 until = 0.13
+
+[[constraint]]
+name = "corner"
+shell = "cloth"
+select.box = { max = [-0.15, -0.04, 9] }
+clamp = true
+from = 0.2
+until = 0.4
+motion.rotate = { axis = [0, 1, 0], degrees = [[0, 0], [0.4, 20]] }
 "#;
 
 const STEPS: usize = 24;
@@ -88,6 +97,10 @@ fn a_restored_simulation_takes_the_same_steps() {
     assert!(kappas.fold(0.0, f64::max) > 1e-3, "the barrier never grew");
     let coupled = |s: &Snapshot| !s.solver.changing_pairs.is_empty();
     assert!(snapshots.iter().any(coupled), "no contact");
+    assert!(
+        snapshots.iter().any(|s| !s.anchors.is_empty()),
+        "nothing took hold"
+    );
     // A pause before every step shows all that a step remembers; a longer way on shows what comes out later.
     for k in 0..STEPS {
         let steps = if k == STEPS / 2 { STEPS - k } else { 1 };
@@ -149,6 +162,13 @@ fn a_snapshot_of_another_model_is_refused() {
     assert!(refused(&|s| s.state.q.push(0.0)).contains("positions for"));
     assert!(refused(&|s| s.state.velocities[3] = f64::NAN).contains("velocities is NaN"));
     assert!(refused(&|s| s.state.time = -1.0).contains("time is -1"));
+    let anchor = |constraint, len| Anchor {
+        constraints: vec![constraint],
+        time: 0.0,
+        q: vec![0.0; len],
+    };
+    assert!(refused(&|s| s.anchors.push(anchor(9, s.state.q.len()))).contains("does not exist"));
+    assert!(refused(&|s| s.anchors.push(anchor(0, 2))).contains("2 positions for"));
     assert!(refused(&|s| s.kappa = None).contains("stiffness is None"));
     assert!(refused(&|s| s.solver.node_order[0] = s.solver.node_order[1]).contains("order"));
     assert!(refused(&|s| s.solver.changing_pairs.push([4, 4])).contains("nodes 4 and 4"));

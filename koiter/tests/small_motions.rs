@@ -61,6 +61,7 @@ impl Sheet {
             axes,
             motion: Motion::default(),
             clamp_directors: clamp,
+            from: 0.0,
             until: f64::INFINITY,
         });
         self

@@ -54,7 +54,7 @@ pub(super) fn load_pattern(model: &Model) -> Result<LoadPattern, ArcLengthError>
     if model.contact.enabled {
         return Err(ArcLengthError::Contact);
     }
-    let moves = |c: &Constraint| !c.motion.is_still() || c.until.is_finite();
+    let moves = |c: &Constraint| !c.motion.is_still() || c.from > 0.0 || c.until.is_finite();
     if let Some(constraint) = model.constraints.iter().position(moves) {
         return Err(ArcLengthError::Motion { constraint });
     }

@@ -280,6 +280,7 @@ impl Builder<'_> {
                 axes: ['x', 'y', 'z'].map(|axis| constraint.axes.contains(axis)),
                 motion: constraint.motion.to_motion(),
                 clamp_directors: constraint.clamp,
+                from: constraint.from.unwrap_or(0.0),
                 until: constraint.until.unwrap_or(f64::INFINITY),
             });
         }

@@ -1,6 +1,7 @@
 //! Clamped edges: from constraints to prescribed directors, and along their motions.
 
 use super::model::{Constraint, Model};
+use super::schedule::MotionPart;
 use super::vertex_directors::HeldDirector;
 use crate::Vec3;
 use crate::assembly::Dof;
@@ -15,9 +16,26 @@ const STIFFNESS: f64 = 1e4;
 /// Where a clamped edge came from.
 struct Source {
     constraint: usize,
+    /// A face that sees the edge, and its corner there.
+    face: usize,
+    corner: usize,
     start_ends: [Vec3; 2],
     start_director: Vec3,
     stiffness: f64,
+}
+
+impl Source {
+    fn begin(&mut self, part: &ShellPart, q: &[f64]) {
+        (self.start_ends, self.start_director) = edge_and_director(part, self.face, self.corner, q);
+    }
+}
+
+/// Ends of an edge as its face traverses it, and its unit director.
+fn edge_and_director(part: &ShellPart, face: usize, corner: usize, q: &[f64]) -> ([Vec3; 2], Vec3) {
+    let vertices = part.mesh.faces()[face];
+    let ends = [vertices[(corner + 1) % 3], vertices[(corner + 2) % 3]];
+    let director = part.directors(face, q)[corner].normalize();
+    (ends.map(|v| part.position(v as usize, q)), director)
 }
 
 /// The point of an edge between clamped vertices: it moves with them.
@@ -26,7 +44,7 @@ pub(super) struct HeldPoint {
     pub(super) dof: Dof,
     /// Index of the constraint.
     pub(super) constraint: usize,
-    /// At time 0 [m].
+    /// When the clamp begins [m].
     pub(super) start: Vec3,
 }
 
@@ -38,14 +56,19 @@ impl HeldPoint {
         q: &[f64],
     ) -> Vec<Self> {
         let held = |(edge, ..): (usize, usize, usize)| {
-            let start = part.first_extra.0 as usize + 3 * edge;
+            let dof = Dof(part.first_extra.0 + 3 * edge as u32);
             Self {
-                dof: Dof(start as u32),
+                dof,
                 constraint: index,
-                start: Vec3::from_column_slice(&q[start..start + 3]),
+                start: Self::read(dof, q),
             }
         };
         held_edges(constraint, part).into_iter().map(held).collect()
+    }
+
+    fn read(dof: Dof, q: &[f64]) -> Vec3 {
+        let start = dof.0 as usize;
+        Vec3::from_column_slice(&q[start..start + 3])
     }
 }
 
@@ -88,18 +111,17 @@ impl Clamps {
                 ExtraUnknowns::None => continue,
             }
             for (edge, face, corner) in held_edges(constraint, part) {
-                let vertices = part.mesh.faces()[face];
-                let ends = [vertices[(corner + 1) % 3], vertices[(corner + 2) % 3]];
-                let start_ends = ends.map(|v| part.position(v as usize, q));
+                let (start_ends, start_director) = edge_and_director(part, face, corner, q);
                 let along = start_ends[1] - start_ends[0];
-                let start_director = part.directors(face, q)[corner].normalize();
-                let apex = part.position(vertices[corner] as usize, q) - start_ends[0];
+                let apex = part.face_corners(face, q)[corner] - start_ends[0];
                 let altitude = along.cross(&apex).norm() / along.norm();
                 let rigidity = part.section.flexural_rigidity(face);
                 let stiffness = clamp_stiffness(rigidity, STIFFNESS, along.norm(), altitude);
                 let stencil = &part.stencils[face];
                 sources.push(Source {
                     constraint: index,
+                    face,
+                    corner,
                     start_ends,
                     start_director,
                     stiffness,
@@ -133,19 +155,39 @@ impl Clamps {
         }
     }
 
-    /// Moves the prescribed edges and directors to a time [s].
-    pub(super) fn advance(&self, model: &Model, time: f64, clamp: &mut DirectorClamp) {
+    /// A constraint begins: what it holds is held from where it is in `q`.
+    pub(super) fn begin(&mut self, constraint: usize, part: &ShellPart, q: &[f64]) {
+        for source in &mut self.sources {
+            if source.constraint == constraint {
+                source.begin(part, q);
+            }
+        }
+        for held in &mut self.held_directors {
+            if held.constraint == constraint {
+                held.begin(q);
+            }
+        }
+        for held in &mut self.held_points {
+            if held.constraint == constraint {
+                held.start = HeldPoint::read(held.dof, q);
+            }
+        }
+    }
+
+    /// Moves the prescribed edges by the motion of their constraint; it is `None` for one that does not act.
+    pub(super) fn advance<'a>(
+        &self,
+        motion: impl Fn(usize) -> Option<MotionPart<'a>>,
+        clamp: &mut DirectorClamp,
+    ) {
         for (source, edge) in self.sources.iter().zip(&mut clamp.edges) {
-            let constraint = &model.constraints[source.constraint];
-            let moved = |x: Vec3| constraint.motion.apply(x, time);
-            let [a, b] = source.start_ends;
-            edge.ends = [moved(a), moved(b)];
-            edge.director = (moved(a + source.start_director) - edge.ends[0]).normalize();
-            edge.stiffness = if time <= constraint.until {
-                source.stiffness
-            } else {
-                0.0
+            let Some(motion) = motion(source.constraint) else {
+                edge.stiffness = 0.0;
+                continue;
             };
+            edge.ends = source.start_ends.map(|x| motion.point(x));
+            edge.director = motion.normal(source.start_director);
+            edge.stiffness = source.stiffness;
         }
     }
 }

@@ -13,6 +13,7 @@ mod display;
 mod elastic;
 mod fingerprint;
 mod free_parts;
+mod holds;
 mod loads;
 mod material_models;
 pub mod measure;
@@ -60,6 +61,7 @@ pub use self::{
     composition::CompositionError,
     display::PartTopology,
     free_parts::FreePart,
+    holds::Anchor,
     loads::LoadTotal,
     material_models::MaterialModelInfo,
     simulation::{Simulation, SystemStats},

@@ -131,13 +131,27 @@ pub struct Schedule<T> {
     pub values: Vec<T>,
 }
 
-/// A scheduled rigid motion: x(t) = R(t) (x(0) − pivot) + pivot + translation(t).
+/// A scheduled motion: scaled, then turned, then moved.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
-    /// Translation [m].
-    pub translation: Option<Schedule<Vec3>>,
+    /// Scaling, if any.
+    pub scaling: Option<Scaling>,
     /// Rotation, if any.
     pub rotation: Option<Rotation>,
+    /// Translation [m].
+    pub translation: Option<Schedule<Vec3>>,
+}
+
+/// A scheduled scaling about a fixed point: x(t) = pivot + S(t) (x(0) − pivot), with S = f 1 or, along a unit vector a,
+/// S = 1 + (f − 1) a aᵀ.
+#[derive(Clone, Debug)]
+pub struct Scaling {
+    /// The point that stays [m].
+    pub pivot: Vec3,
+    /// Unit direction in which lengths change; `None`: in all.
+    pub along: Option<Vec3>,
+    /// Factor f on lengths, larger than 0.
+    pub factor: Schedule<f64>,
 }
 
 /// A scheduled rotation about a fixed axis.
@@ -160,14 +174,30 @@ pub struct Constraint {
     pub vertices: Vec<VertexId>,
     /// Which of x, y, z are prescribed.
     pub axes: [bool; 3],
-    /// Motion relative to the start positions.
+    /// Motion relative to the start positions; of a constraint that begins later, what of it is still to come then,
+    /// relative to the positions at that time.
     pub motion: Motion,
-    /// Whether the directors of edges between constrained vertices are held too (a clamp): they keep their direction at
-    /// the start, turned with the motion. Needs all three axes; models without directors hold whole faces instead.
+    /// Whether the directors of edges between constrained vertices are held too (a clamp): they keep the direction they
+    /// have when the constraint begins, turned with the motion. Needs all three axes; models without directors hold
+    /// whole faces instead.
     pub clamp_directors: bool,
+    /// The constraint begins at this time [s] (from the start: 0).
+    pub from: f64,
     /// The constraint ends at this time [s] (never: infinity).
     pub until: f64,
 }
+
+impl Constraint {
+    /// Whether the time window of the constraint has a step in it that ends at `time` [s], up to the rounding of times
+    /// that are sums of steps.
+    pub fn is_due(&self, time: f64) -> bool {
+        let rounding = TIME_ROUNDING * time;
+        time - self.from > rounding && time - self.until <= rounding
+    }
+}
+
+/// Relative error that the sum of all steps of a run may have.
+const TIME_ROUNDING: f64 = 1e-9;
 
 /// A plane across a coordinate axis behind which a shell goes on as its mirror image: vertices on it stay on it, and
 /// directors there stay in it. Only for bending models with directors.

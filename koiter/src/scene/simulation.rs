@@ -2,10 +2,10 @@
 
 use super::arc_length;
 use super::assemble::{Assembly, BuildError, assemble};
-use super::clamps::Clamps;
 use super::display::{PartTopology, tessellate};
+use super::holds::Holds;
 use super::loads::set_factors;
-use super::model::{Constraint, IntegratorKind, Model};
+use super::model::{IntegratorKind, Model};
 use super::symmetry::held_by;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, Energy};
@@ -17,12 +17,12 @@ use crate::integrate::{
 
 /// A model with its state, advanced step by step.
 pub struct Simulation {
-    model: Model,
+    pub(super) model: Model,
     pub(super) system: System,
     pub(super) state: State,
     integrator: Box<dyn Integrator>,
     obstacles: Vec<(Dof, Vec<Vec3>)>,
-    clamps: Clamps,
+    pub(super) holds: Holds,
     parts: Vec<PartTopology>,
     /// Mass times acceleration of the last step [N]; zero in statics.
     pub(super) momentum_rates: Vec<f64>,
@@ -93,6 +93,7 @@ impl Simulation {
             _ => None,
         };
         let parts = tessellate(&model);
+        let holds = Holds::new(&model, clamps);
         let state = State {
             q,
             velocities,
@@ -107,7 +108,7 @@ impl Simulation {
             state,
             integrator,
             obstacles,
-            clamps,
+            holds,
             parts,
             momentum_rates,
             share: 1.0,
@@ -138,6 +139,9 @@ impl Simulation {
 
     /// One step of the integrator, to the time `time` [s], `dt` [s] from now.
     pub(super) fn step_to(&mut self, time: f64, dt: f64) -> Result<StepReport, StepError> {
+        let parts = &self.system.space.shells;
+        let window = [self.state.time, time];
+        self.holds.switch(&self.model, parts, &self.state.q, window);
         self.apply_schedules(time);
         let prescribed = self.prescribed_at(time);
         let before = self.state.velocities.clone();
@@ -174,43 +178,20 @@ impl Simulation {
             self.system.gravity.acceleration = self.model.gravity * scale.at(time);
         }
         set_factors(&self.model, time, &mut self.system.loads);
-        self.clamps
-            .advance(&self.model, time, self.system.clamps.local_mut());
+        self.holds
+            .move_clamps(&self.model, time, self.system.clamps.local_mut());
     }
 
     pub(super) fn prescribed_at(&self, time: f64) -> Prescribed {
-        let mut is_fixed = vec![false; self.system.layout.num_solved_dofs()];
-        let mut target = self.state.q.clone();
-        for constraint in self.model.constraints.iter().filter(|c| time <= c.until) {
-            let shell = &self.model.shells[constraint.shell];
-            let part = &self.system.space.shells[constraint.shell];
-            for vertex in &constraint.vertices {
-                let v = vertex.0 as usize;
-                let x = constraint.motion.apply(shell.surface.positions[v], time);
-                let start = part.first_vertex.0 as usize + 3 * v;
-                for axis in (0..3).filter(|&axis| constraint.axes[axis]) {
-                    is_fixed[start + axis] = true;
-                    target[start + axis] = x[axis];
-                }
-            }
-        }
-        let mut hold = |index: usize, dof: Dof, at: &dyn Fn(&Constraint) -> Vec3| {
-            let constraint = &self.model.constraints[index];
-            if time <= constraint.until {
-                let range = dof.0 as usize..dof.0 as usize + 3;
-                is_fixed[range.clone()].fill(true);
-                target[range].copy_from_slice(at(constraint).as_slice());
-            }
+        let shells = &self.system.space.shells;
+        let mut prescribed = Prescribed {
+            is_fixed: vec![false; self.system.layout.num_solved_dofs()],
+            target: self.state.q.clone(),
         };
-        for held in &self.clamps.held_directors {
-            hold(held.constraint, held.dof, &|c| held.at(c, time));
-        }
-        for held in &self.clamps.held_points {
-            hold(held.constraint, held.dof, &|c| {
-                c.motion.apply(held.start, time)
-            });
-        }
-        for (dof, value) in held_by(&self.model, &self.system.space.shells) {
+        self.holds
+            .prescribe(&self.model, shells, time, &mut prescribed);
+        let Prescribed { is_fixed, target } = &mut prescribed;
+        for (dof, value) in held_by(&self.model, shells) {
             is_fixed[dof] = true;
             target[dof] = value;
         }
@@ -221,7 +202,7 @@ impl Simulation {
                     .copy_from_slice(obstacle.motion.apply(*x, time).as_slice());
             }
         }
-        Prescribed { is_fixed, target }
+        prescribed
     }
 
     /// Simulated time [s].
@@ -305,7 +286,7 @@ impl Simulation {
         let constraint = &self.model.constraints[index];
         let mut held = vec![false; gradient.len()];
         let mut force = Vec3::zeros();
-        if self.state.time > constraint.until {
+        if !self.holds.is_acting(index) {
             return force;
         }
         let part = &self.system.space.shells[constraint.shell];
@@ -318,7 +299,10 @@ impl Simulation {
             }
         }
         // A clamp turns the surface by pushing free vertices too.
-        let clamp = self.clamps.of_constraint(index, self.system.clamps.local());
+        let clamp = self
+            .holds
+            .clamps
+            .of_constraint(index, self.system.clamps.local());
         let mut pushes = vec![0.0; gradient.len()];
         Assembled::new(clamp, &self.system.layout).add_gradient(&self.state.q, &mut pushes);
         for dof in part.vertex_dofs().filter(|&dof| !held[dof]) {

@@ -1,5 +1,6 @@
 //! What a simulation owes to its past, so that it can be left and taken up again to the same bits.
 
+use super::holds::Anchor;
 use super::simulation::Simulation;
 use crate::assembly::Energy;
 use crate::integrate::{PathPoint, State};
@@ -19,6 +20,8 @@ pub struct Snapshot {
     pub turned: Vec<f64>,
     /// The share of a static step that is tried first.
     pub share: f64,
+    /// Where constraints that began during the run and still act took over.
+    pub anchors: Vec<Anchor>,
     /// What the linear solver keeps between steps.
     pub solver: WorkspaceHistory,
 }
@@ -40,6 +43,7 @@ impl Simulation {
             kappa: self.system.contact.as_ref().map(|contact| contact.kappa()),
             turned: self.system.loads.turned(),
             share: self.share,
+            anchors: self.holds.anchors().to_vec(),
             solver: self.system.workspace.history(),
         }
     }
@@ -57,7 +61,10 @@ impl Simulation {
         self.momentum_rates = snapshot.momentum_rates.clone();
         self.share = snapshot.share;
         (self.system.loads).restore_turned(&snapshot.turned, &self.state.q);
-        self.apply_schedules(self.state.time);
+        let parts = &self.system.space.shells;
+        let (model, time) = (&self.model, self.state.time);
+        self.holds.restore(model, parts, time, &snapshot.anchors);
+        self.apply_schedules(time);
         if let (Some(contact), Some(kappa)) = (&mut self.system.contact, snapshot.kappa) {
             contact.set_kappa(kappa);
             contact.prepare(&self.state.q);
@@ -96,10 +103,31 @@ impl Simulation {
             return Err(format!("its share of a step is {}", snapshot.share));
         }
         self.check_path(state.path.as_ref())?;
+        (snapshot.anchors.iter()).try_for_each(|anchor| self.check_anchor(anchor))?;
         match (&self.system.contact, snapshot.kappa) {
             (None, None) => Ok(()),
             (Some(_), Some(kappa)) if kappa.is_finite() && kappa > 0.0 => Ok(()),
             (_, kappa) => Err(format!("its barrier stiffness is {kappa:?}")),
+        }
+    }
+
+    fn check_anchor(&self, anchor: &Anchor) -> Result<(), String> {
+        let is_there = |&index: &usize| index < self.model().constraints.len();
+        let values = anchor.q.iter().chain([&anchor.time]);
+        match () {
+            () if !anchor.constraints.iter().all(is_there) => {
+                Err("a constraint that began does not exist".into())
+            }
+            () if anchor.q.len() != self.state.q.len() => {
+                let (given, needed) = (anchor.q.len(), self.state.q.len());
+                Err(format!(
+                    "a constraint began at {given} positions for {needed}"
+                ))
+            }
+            () if values.clone().any(|value| !value.is_finite()) => {
+                Err("a constraint began at positions that are not finite".into())
+            }
+            () => Ok(()),
         }
     }
 

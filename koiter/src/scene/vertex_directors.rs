@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::assemble::write_points;
 use super::elastic::rest_surface;
-use super::model::{Constraint, Shell};
+use super::model::Shell;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::energy::bending::{DiscreteKirchhoff, vertex_normals};
@@ -81,29 +81,33 @@ fn add_inertia(shell: &Shell, part: &ShellPart, masses: &mut [f64]) {
     }
 }
 
-/// The director of a clamped vertex: it keeps its direction at the start, turned with the motion of the clamp.
+/// The director of a clamped vertex: it keeps the direction it has when the clamp begins, turned with its motion.
 pub(super) struct HeldDirector {
     /// The director.
     pub(super) dof: Dof,
     /// Index of the constraint.
     pub(super) constraint: usize,
-    /// At time 0.
-    start: Vec3,
+    /// When the clamp begins.
+    pub(super) start: Vec3,
 }
 
 impl HeldDirector {
     pub(super) fn new(constraint: usize, dof: Dof, q: &[f64]) -> Self {
-        let start = dof.0 as usize;
+        let start = Self::read(dof, q);
         Self {
             dof,
             constraint,
-            start: Vec3::from_column_slice(&q[start..start + 3]).normalize(),
+            start,
         }
     }
 
-    /// The director at a time [s].
-    pub(super) fn at(&self, constraint: &Constraint, time: f64) -> Vec3 {
-        let moved = |x: Vec3| constraint.motion.apply(x, time);
-        (moved(self.start) - moved(Vec3::zeros())).normalize()
+    /// The clamp begins at `q`.
+    pub(super) fn begin(&mut self, q: &[f64]) {
+        self.start = Self::read(self.dof, q);
+    }
+
+    fn read(dof: Dof, q: &[f64]) -> Vec3 {
+        let start = dof.0 as usize;
+        Vec3::from_column_slice(&q[start..start + 3]).normalize()
     }
 }

@@ -7,6 +7,7 @@
 //! u8 1 with contact, else 0  f64 barrier stiffness
 //! u8 1 on a path by arc length, else 0  f64 load factor  f64 arc length  list of f64: last increment
 //! list of f64: what the directors under moments have turned  f64 share of a step
+//! list of anchors: list of u64 constraints, f64 time, list of f64: q when they began
 //! list of u32 × 2: couplings by contacts  list of u32: elimination order  u64 factor entries when it was made
 //! u64 × 3 Newton iterations, steps not converged, intersections  f64 × 2 smallest gap, seconds
 //! list of parts of the run: text name, f64 seconds  list of f64: last values of the probes
@@ -23,11 +24,11 @@ use super::topology_file::checked_body;
 use crate::integrate::{PathPoint, State};
 use crate::io::bytes::{ByteReader, Endian};
 use crate::io::checksum::crc32;
-use crate::scene::Snapshot;
+use crate::scene::{Anchor, Snapshot};
 use crate::solve::WorkspaceHistory;
 
 const MAGIC: &[u8; 8] = b"KOITERCP";
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 /// All that is needed to go on with a run to the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -142,6 +143,11 @@ impl Checkpoint {
         out.path(snapshot.state.path.as_ref());
         out.numbers(&snapshot.turned);
         out.f64(snapshot.share);
+        out.list(&snapshot.anchors, |out, anchor| {
+            out.list(&anchor.constraints, |out, index| out.u64(*index as u64));
+            out.f64(anchor.time);
+            out.numbers(&anchor.q);
+        });
         let WorkspaceHistory {
             changing_pairs,
             node_order,
@@ -225,6 +231,7 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
     state.path = path(reader)?;
     let turned = numbers(reader)?;
     let share = reader.f64()?;
+    let anchors = list(reader, 24, anchor)?;
     let solver = WorkspaceHistory {
         changing_pairs: list(reader, 8, |reader| Some([reader.u32()?, reader.u32()?]))?,
         node_order: list(reader, 4, ByteReader::u32)?,
@@ -245,6 +252,7 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
         kappa: (has_contact == 1).then_some(kappa),
         turned,
         share,
+        anchors,
         solver,
     };
     Some(Checkpoint {
@@ -276,6 +284,14 @@ fn list<'a, T>(
 
 fn numbers(reader: &mut ByteReader) -> Option<Vec<f64>> {
     list(reader, 8, ByteReader::f64)
+}
+
+fn anchor(reader: &mut ByteReader) -> Option<Anchor> {
+    Some(Anchor {
+        constraints: list(reader, 8, |reader| usize::try_from(reader.u64()?).ok())?,
+        time: reader.f64()?,
+        q: numbers(reader)?,
+    })
 }
 
 /// `None` where the bytes end, `Some(None)` where there is no path.

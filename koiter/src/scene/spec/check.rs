@@ -182,7 +182,14 @@ fn check_obstacle(path: &str, obstacle: &ObstacleSpec) -> Checked {
         check_rotation(&at("rotate"), rotate)?;
     }
     not_negative(&at("friction"), obstacle.friction, "")?;
-    check_motion(&at("motion"), &obstacle.motion)
+    check_motion(&at("motion"), &obstacle.motion)?;
+    let shape = given[0];
+    if obstacle.motion.scale.is_some() && ["plane", "sphere", "capsule"].contains(&shape) {
+        let message = format!("a {shape} cannot be scaled");
+        return Err(error(Kind::Conflict, &at("motion.scale"), message)
+            .with_help("use a mesh, such as mesh.icosphere"));
+    }
+    Ok(())
 }
 
 fn check_motion(path: &str, motion: &MotionSpec) -> Checked {
@@ -192,6 +199,16 @@ fn check_motion(path: &str, motion: &MotionSpec) -> Checked {
     if let Some(rotate) = &motion.rotate {
         check_direction(&format!("{path}.rotate.axis"), rotate.axis)?;
         check_schedule(&format!("{path}.rotate.degrees"), &rotate.degrees)?;
+    }
+    if let Some(scale) = &motion.scale {
+        let at = |key: &str| format!("{path}.scale.{key}");
+        if let Some(along) = scale.along {
+            check_direction(&at("along"), along)?;
+        }
+        check_schedule(&at("factor"), &scale.factor)?;
+        for (key, factor) in scale.factor.values.iter().enumerate() {
+            positive(&at(&format!("factor.{key}.1")), *factor, "")?;
+        }
     }
     Ok(())
 }
@@ -235,6 +252,12 @@ fn check_constraint(path: &str, constraint: &ConstraintSpec, spec: &SceneSpec) -
             .with_help("write \"xyz\", \"z\", \"xy\", …"));
     }
     optional_positive(&at("until"), constraint.until, "s")?;
+    let from = constraint.from.unwrap_or(0.0);
+    not_negative(&at("from"), from, "s")?;
+    if let Some(until) = constraint.until.filter(|until| *until <= from) {
+        let message = format!("the constraint ends at {until} s, before it begins at {from} s");
+        return Err(error(Kind::OutOfRange, &at("until"), message));
+    }
     check_motion(&at("motion"), &constraint.motion)
 }
 

@@ -21,6 +21,11 @@ fn checkpoint() -> Checkpoint {
             kappa: Some(1e5),
             turned: vec![7.5],
             share: 0.25,
+            anchors: vec![Anchor {
+                constraints: vec![2, 0],
+                time: 0.5,
+                q: vec![1.0, -0.0],
+            }],
             solver: WorkspaceHistory {
                 changing_pairs: vec![[0, 1], [0, 7]],
                 node_order: vec![2, 0, 1],
