@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
 pub(crate) enum Verb {
     /// Runs a scene into a result folder: frames, figures, pictures and a film.
     Run(RunArguments),
-    /// Reads and checks a scene and says what it is; runs nothing.
+    /// Reads and checks a scene, or every frame of a result; runs nothing.
     Check(CheckArguments),
     /// Makes a picture or a film of a result.
     Render(RenderArguments),
@@ -91,7 +91,7 @@ Examples:
   koiter run my/scene.toml --resume            goes on after Ctrl-C, a kill or a full disk
   koiter run my/scene.toml --resume --until 5  goes on beyond the end that was reached
 
-The result folder holds manifest.json, topology.bin, frames/, stats.jsonl (a line a step), probes.csv and
+The result folder holds manifest.json, topology.bin, rest.bin, frames/, stats.jsonl (a line a step), probes.csv and
 summary.json; a result that is there already is replaced, but not an interrupted run.
 
 checkpoint.bin is where --resume goes on: written after a step once output.checkpoint_seconds (10 s) have gone by,
@@ -137,10 +137,18 @@ pub(crate) struct RunArguments {
 #[command(after_help = "\
 Examples:
   koiter check sphere-drape
-  koiter check my/scene.toml --set resolution=paper --json")]
+  koiter check my/scene.toml --set resolution=paper --json
+  koiter check --result results/sphere-drape   tests every frame that was written
+
+--result looks, with exact predicates and without the code of the run, for shells that cross themselves, each other or
+obstacles, for collapsed faces, and for edges whose faces lie on each other. Status 1: something was found, or a frame is
+missing or damaged.")]
 pub(crate) struct CheckArguments {
     #[command(flatten)]
-    pub(crate) scene: SceneArguments,
+    pub(crate) scene: Option<SceneArguments>,
+    /// Check the frames of a result folder instead of a scene
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath, conflicts_with_all = ["SceneArguments", "debug_mesh"])]
+    pub(crate) result: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,

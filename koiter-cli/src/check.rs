@@ -1,11 +1,13 @@
 //! `koiter check`: reads everything, runs nothing.
 
+mod result;
+
 use crate::output::say;
 use koiter::scene::model::{Load, Model, Shell};
 use koiter::scene::{LoadTotal, readable_bytes};
 use serde::Serialize;
 
-use crate::arguments::CheckArguments;
+use crate::arguments::{CheckArguments, SceneArguments};
 use crate::failure::Failure;
 use crate::run::start;
 use crate::scene_source::load;
@@ -78,9 +80,19 @@ impl LoadReport {
     }
 }
 
-/// Checks a scene.
+/// Checks a scene or a result.
 pub(crate) fn check(arguments: &CheckArguments) -> Result<(), Failure> {
-    let loaded = load(&arguments.scene)?;
+    match (&arguments.scene, &arguments.result) {
+        (Some(scene), _) => check_scene(scene, arguments),
+        (None, Some(result)) => result::check(result, arguments.json),
+        (None, None) => Err(Failure::input(
+            "name a scene, or a result with --result DIR",
+        )),
+    }
+}
+
+fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(), Failure> {
+    let loaded = load(scene)?;
     let scene = loaded.scene;
     let shells = scene.model.shells.iter().map(|shell| {
         let surface = &shell.surface;

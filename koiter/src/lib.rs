@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod assembly;
+pub mod audit;
 pub mod contact;
 pub mod energy;
 pub mod geometry;

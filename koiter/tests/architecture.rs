@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-const ORDER: [&str; 12] = [
+const ORDER: [&str; 13] = [
     "mesh",
     "geometry",
     "material",
     "rest",
     "assembly",
+    "audit",
     "energy",
     "contact",
     "solve",

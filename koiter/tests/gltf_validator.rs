@@ -52,6 +52,7 @@ fn write_result(folder: &Path, up_axis: UpAxis) -> ResultReader {
         thickness: 0.0,
         vertices,
         faces,
+        solid: None,
     };
     let manifest = Manifest {
         title: "A \"sheet\" \\ ü".to_string(),

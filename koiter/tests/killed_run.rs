@@ -19,6 +19,7 @@ fn write_until_killed(folder: &Path) {
         thickness: 1e-3,
         vertices: 0..NUM_VERTICES,
         faces: 0..1,
+        solid: None,
     };
     let manifest = Manifest {
         parts: vec![part],

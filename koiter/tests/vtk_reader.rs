@@ -78,6 +78,7 @@ fn write_result(folder: &Path) {
         thickness: 1e-3,
         vertices,
         faces,
+        solid: None,
     };
     let manifest = Manifest {
         parts: vec![

@@ -39,6 +39,9 @@ impl<'a> Recorder<'a> {
     ) -> Result<Self, Failure> {
         let (manifest, faces) = start::manifest(loaded, simulation);
         let writer = ResultWriter::create_locked(lock, &manifest, &faces).map_err(writing)?;
+        writer
+            .write_rest(&simulation.rest_faces())
+            .map_err(writing)?;
         let folder = writer.folder();
         let probes = ProbeWriter::create(folder, &loaded.scene.probes)
             .map_err(|error| cannot_write(&folder.join("probes.csv"), error))?;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use koiter::io::result::{Manifest, Part, PartKind};
-use koiter::scene::model::Model;
+use koiter::scene::model::{Model, Obstacle};
 use koiter::scene::{BuildError, Simulation};
 
 use crate::debug_mesh;
@@ -30,8 +30,11 @@ pub(crate) fn start(model: &Model, debug_mesh: Option<&Path>) -> Result<Simulati
 /// Parts and faces of everything that is shown.
 pub(super) fn manifest(loaded: &LoadedScene, simulation: &Simulation) -> (Manifest, Vec<[u32; 3]>) {
     let (mut parts, mut faces) = (Vec::new(), Vec::new());
+    let model = simulation.model();
+    let solids = model.shells.iter().map(|_| None);
+    let solids = solids.chain(model.obstacles.iter().map(Obstacle::solid));
     let mut first_vertex = 0;
-    for part in simulation.parts() {
+    for (part, solid) in simulation.parts().iter().zip(solids) {
         let first_face = faces.len();
         let offset = first_vertex as u32;
         faces.extend(
@@ -49,6 +52,7 @@ pub(super) fn manifest(loaded: &LoadedScene, simulation: &Simulation) -> (Manife
             thickness: part.thickness,
             vertices: first_vertex..first_vertex + part.num_vertices,
             faces: first_face..faces.len(),
+            solid,
         });
         first_vertex += part.num_vertices;
     }

@@ -1,15 +1,13 @@
 //! Do surfaces intersect? Decided with exact predicates, independently of distances, barriers and candidates.
 //!
 //! Two triangle meshes in general position intersect if and only if an edge of one crosses a face of the other, so all
-//! edges are tested against all faces with which they share no vertex. Signs of volumes come from adaptive-precision
-//! arithmetic (crate `robust`) and are right for every input. An edge that only touches a face counts as crossing; an
-//! edge in the plane of a face is left to the faces around it.
-
-use robust::{Coord3D, orient3d};
+//! edges are tested against all faces with which they share no vertex. The test is exact for every input; an edge that
+//! only touches a face counts as crossing.
 
 use super::boxes::Aabb;
 use super::broad_phase::BoxTree;
 use crate::Vec3;
+use crate::geometry::segment_meets_triangle;
 
 /// An edge that crosses a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,28 +16,6 @@ pub struct Intersection {
     pub edge: u32,
     /// Index of the face.
     pub face: u32,
-}
-
-fn side(a: &Vec3, b: &Vec3, c: &Vec3, d: &Vec3) -> f64 {
-    let coord = |p: &Vec3| Coord3D {
-        x: p.x,
-        y: p.y,
-        z: p.z,
-    };
-    orient3d(coord(a), coord(b), coord(c), coord(d))
-}
-
-/// Whether the closed segment `p q` crosses the closed triangle `a b c`; false if it lies in the plane.
-fn crosses(p: &Vec3, q: &Vec3, [a, b, c]: [&Vec3; 3]) -> bool {
-    let (above, below) = (side(a, b, c, p), side(a, b, c, q));
-    if (above > 0.0 && below > 0.0)
-        || (above < 0.0 && below < 0.0)
-        || (above == 0.0 && below == 0.0)
-    {
-        return false;
-    }
-    let around = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
-    around.iter().all(|s| *s >= 0.0) || around.iter().all(|s| *s <= 0.0)
 }
 
 /// All edges that cross faces, by edge and then by face; pairs that share a vertex or for which `ignore` holds (by one
@@ -66,7 +42,7 @@ pub fn intersections(
         let crossing = !f.contains(&e[0])
             && !f.contains(&e[1])
             && !ignore(e[0], f[0])
-            && crosses(at(e[0]), at(e[1]), [at(f[0]), at(f[1]), at(f[2])]);
+            && segment_meets_triangle(at(e[0]), at(e[1]), [at(f[0]), at(f[1]), at(f[2])]);
         crossing.then_some(Intersection { edge, face })
     };
     let mut found = (tree.pairs(&edge_boxes, usize::MAX, |_, _| false, check)).unwrap_or_default();

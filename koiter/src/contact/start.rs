@@ -100,7 +100,10 @@ impl Contact {
         let describe = |hit: Intersection| {
             let (edge, face) = (mesh.edges[hit.edge as usize], mesh.faces[hit.face as usize]);
             let [a, b, c] = face.map(|v| x[v as usize]);
-            let normal = (b - a).cross(&(c - a)).normalize();
+            let normal = (b - a)
+                .cross(&(c - a))
+                .try_normalize(0.0)
+                .unwrap_or_default();
             let depth = edge.map(|v| normal.dot(&(x[v as usize] - a)).abs());
             TouchingPair {
                 description: format!(

@@ -9,6 +9,7 @@
 //! - the tilt of the director of an edge, seen from a face, is ζ = θ/2 + ε α with the edge angle α.
 
 mod closest;
+mod crossing;
 mod jet;
 mod wing;
 
@@ -16,5 +17,6 @@ pub use closest::{
     ClosestPoints, edge_edge, edge_edge_distance_squared, point_edge, point_edge_distance_squared,
     point_triangle, point_triangle_distance_squared,
 };
+pub use crossing::segment_meets_triangle;
 pub use jet::{Jet, Real};
 pub use wing::{Wing, WingFunctional, hinge_angle};

@@ -3,6 +3,7 @@
 //! ```text
 //! manifest.json     format, version, title, scene text, parts
 //! topology.bin      the faces of all parts
+//! rest.bin          what every face is at rest
 //! frames/00000.bin  step, time, positions, fields; 00001.bin, …
 //! stats.jsonl       one JSON object a step
 //! checkpoint.bin    where an interrupted run goes on
@@ -19,6 +20,7 @@ mod folder_lock;
 mod frame;
 mod manifest;
 mod reader;
+mod rest_file;
 mod topology_file;
 mod writer;
 
@@ -35,6 +37,7 @@ use std::path::{Path, PathBuf};
 
 const MANIFEST: &str = "manifest.json";
 const TOPOLOGY: &str = "topology.bin";
+const REST: &str = "rest.bin";
 const FRAMES: &str = "frames";
 const STATS: &str = "stats.jsonl";
 const CHECKPOINT: &str = "checkpoint.bin";

@@ -70,6 +70,12 @@ impl RestFrame {
         [x / length, y / length]
     }
 
+    /// Lengths of the edges opposite to the corners [m].
+    pub fn edge_lengths(&self) -> [f64; 3] {
+        let [d11, d12, d22] = self.edges();
+        [(d12 - d11).hypot(d22), d12.hypot(d22), d11]
+    }
+
     /// Entries `11, 12, 22` of D [m].
     fn edges(&self) -> [f64; 3] {
         let [m11, m12, m22] = self.inverse;
@@ -151,6 +157,10 @@ mod tests {
                 && f1.dot(&f2).abs() < 1e-14
         );
         assert!((frame.area - 0.5 * (x[1] - x[0]).cross(&(x[2] - x[0])).norm()).abs() < 1e-15);
+        for (corner, length) in frame.edge_lengths().into_iter().enumerate() {
+            let edge = x[(corner + 2) % 3] - x[(corner + 1) % 3];
+            assert!((length - edge.norm()).abs() < 1e-15);
+        }
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! What is shown of a model: its shells, and obstacles as triangle meshes.
 
 use super::model::{Model, Obstacle, ObstacleShape};
+use super::simulation::Simulation;
 use crate::Vec3;
+use crate::audit::{RestFace, Solid};
 use crate::mesh::generate;
 
 /// A surface to show.
@@ -83,6 +85,50 @@ fn obstacle_part(obstacle: &Obstacle, extent: f64) -> PartTopology {
         faces,
         thickness: 0.0,
         start_positions: positions,
+    }
+}
+
+impl Obstacle {
+    /// The exact shape of an obstacle that is shown with faces which only come near it, as it stands at time 0.
+    pub fn solid(&self) -> Option<Solid> {
+        let at_start = |x: &Vec3| -> [f64; 3] { self.motion.apply(*x, 0.0).into() };
+        match &self.shape {
+            ObstacleShape::Plane { point, normal } => Some(Solid::HalfSpace {
+                point: at_start(point),
+                normal: (*normal).into(),
+            }),
+            ObstacleShape::Sphere { center, radius } => Some(Solid::Ball {
+                center: at_start(center),
+                radius: *radius,
+            }),
+            ObstacleShape::Capsule { ends, radius } => Some(Solid::Capsule {
+                ends: ends.each_ref().map(at_start),
+                radius: *radius,
+            }),
+            ObstacleShape::Mesh(_) => None,
+        }
+    }
+}
+
+impl Simulation {
+    /// What the faces of all parts are at rest: those of shells in their rest metric, those of obstacles at the start.
+    pub fn rest_faces(&self) -> Vec<RestFace> {
+        let frames = self
+            .system
+            .space
+            .shells
+            .iter()
+            .flat_map(|shell| &shell.frames);
+        let of_shells = frames.map(|frame| RestFace {
+            area: frame.area,
+            edges: frame.edge_lengths(),
+        });
+        let obstacles = self.parts().iter().filter(|part| part.is_obstacle);
+        let of_obstacles = obstacles.flat_map(|part| {
+            let corners = |face: &[u32; 3]| face.map(|v| part.start_positions[v as usize]);
+            (part.faces.iter()).map(move |face| RestFace::from_corners(&corners(face)))
+        });
+        of_shells.chain(of_obstacles).collect()
     }
 }
 

@@ -66,7 +66,7 @@ pub enum ResultError {
     /// What was to be written contradicts itself.
     #[error("the {what} cannot be written: {reason}")]
     Invalid {
-        /// "manifest", "topology" or "frame".
+        /// "manifest", "topology", "rest shape" or "frame".
         what: &'static str,
         /// What is wrong with it.
         reason: String,

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::while_trying;
 use super::{MANIFEST, ResultError};
+use crate::audit::Solid;
 use crate::io::{MAX_DATA_BYTES, read_bounded};
 
 /// The value of the key `format` by which a result folder is known.
@@ -70,6 +71,9 @@ pub struct Part {
     pub vertices: Range<usize>,
     /// Its faces; they use its vertices only, by their number in the whole.
     pub faces: Range<usize>,
+    /// The exact shape of an obstacle whose faces only come near it, as it stands in the first frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solid: Option<Solid>,
 }
 
 /// What a part is.

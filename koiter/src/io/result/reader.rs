@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use super::error::{read_file, read_if_there, unreadable, while_trying};
 use super::frame::HEADER_LENGTH;
 use super::{
-    FRAMES, Frame, FrameInfo, Manifest, ResultError, STATS, SUMMARY, TOPOLOGY, decode_topology,
-    frame_path,
+    FRAMES, Frame, FrameInfo, Manifest, REST, ResultError, STATS, SUMMARY, TOPOLOGY,
+    decode_topology, frame_path, rest_file,
 };
+use crate::audit::RestFace;
 use crate::io::bounded_read::open_regular;
 
 /// A result folder opened for reading; frames are read when asked for.
@@ -27,6 +28,23 @@ impl ResultReader {
     /// # Errors
     /// Not a result folder, a newer format, a broken file, a missing frame, a refusal of the system.
     pub fn open(folder: &Path) -> Result<Self, ResultError> {
+        Self::open_with(folder, count_frames)
+    }
+
+    /// As [`ResultReader::open`], but frames may be missing: for who looks at each anyway. The length is then that up to
+    /// the last.
+    ///
+    /// # Errors
+    /// As there, but for missing frames.
+    pub fn open_with_gaps(folder: &Path) -> Result<Self, ResultError> {
+        let count = |folder: &Path| Ok(frame_indices(folder)?.last().map_or(0, |last| last + 1));
+        Self::open_with(folder, count)
+    }
+
+    fn open_with(
+        folder: &Path,
+        count: impl FnOnce(&Path) -> Result<usize, ResultError>,
+    ) -> Result<Self, ResultError> {
         let manifest = Manifest::read(folder)?;
         let path = folder.join(TOPOLOGY);
         let bytes = read_file(&path)?;
@@ -42,7 +60,7 @@ impl ResultReader {
             )));
         }
         manifest.check(&faces).map_err(broken)?;
-        let len = count_frames(folder)?;
+        let len = count(folder)?;
         Ok(Self {
             folder: folder.to_path_buf(),
             manifest,
@@ -111,6 +129,22 @@ impl ResultReader {
         Frame::decode_info(&bytes).map_err(|reason| ResultError::Broken { path, reason })
     }
 
+    /// What every face is at rest, in the order of [`ResultReader::faces`]; `None` in results of versions that did not
+    /// write it.
+    ///
+    /// # Errors
+    /// A broken file, a refusal of the system.
+    pub fn rest(&self) -> Result<Option<Vec<RestFace>>, ResultError> {
+        let path = self.folder.join(REST);
+        let Some(bytes) = read_if_there(&path)? else {
+            return Ok(None);
+        };
+        match rest_file::decode(&bytes, self.faces.len()) {
+            Ok(rest) => Ok(Some(rest)),
+            Err(reason) => Err(ResultError::Broken { path, reason }),
+        }
+    }
+
     /// The lines of `stats.jsonl`; see [`decode_stats`].
     ///
     /// # Errors
@@ -166,8 +200,8 @@ pub fn decode_stats(bytes: &[u8]) -> Result<Vec<serde_json::Value>, String> {
         .collect()
 }
 
-/// Number of frame files; they must be numbered from 0 without gap.
-fn count_frames(folder: &Path) -> Result<usize, ResultError> {
+/// Numbers of the frame files, growing.
+fn frame_indices(folder: &Path) -> Result<Vec<usize>, ResultError> {
     let frames = folder.join(FRAMES);
     let mut indices = Vec::new();
     for entry in fs::read_dir(&frames).map_err(while_trying("list", &frames))? {
@@ -178,6 +212,12 @@ fn count_frames(folder: &Path) -> Result<usize, ResultError> {
         indices.extend(index);
     }
     indices.sort_unstable();
+    Ok(indices)
+}
+
+/// Number of frame files; they must be numbered from 0 without gap.
+fn count_frames(folder: &Path) -> Result<usize, ResultError> {
+    let indices = frame_indices(folder)?;
     match indices
         .iter()
         .enumerate()

@@ -12,6 +12,7 @@ fn manifest() -> Manifest {
         thickness,
         vertices,
         faces,
+        solid: None,
     };
     Manifest {
         title: "A sheet over a floor".to_string(),

@@ -8,9 +8,10 @@ use serde::Serialize;
 
 use super::error::{read_if_there, while_trying};
 use super::{
-    CHECKPOINT, Checkpoint, FRAMES, FolderLock, Frame, MANIFEST, Manifest, ResultError,
-    ResultReader, STATS, SUMMARY, TOPOLOGY, frame_path, topology_file,
+    CHECKPOINT, Checkpoint, FRAMES, FolderLock, Frame, MANIFEST, Manifest, REST, ResultError,
+    ResultReader, STATS, SUMMARY, TOPOLOGY, frame_path, rest_file, topology_file,
 };
+use crate::audit::RestFace;
 use crate::io::write_atomically;
 
 /// Another file of a run, which belongs to the old result when a folder is written anew.
@@ -30,7 +31,7 @@ impl ResultWriter {
     /// Starts a result in `folder`, which is created if needed.
     ///
     /// `faces` are those of all parts, by the vertex numbers of the whole. A folder that holds an old Koiter result is
-    /// written anew: its frames, `stats.jsonl`, `summary.json`, `checkpoint.bin` and `probes.csv` are deleted first,
+    /// written anew: its frames, `rest.bin`, `stats.jsonl`, `summary.json`, `checkpoint.bin` and `probes.csv` are deleted first,
     /// everything else in it stays.
     ///
     /// # Errors
@@ -173,6 +174,22 @@ impl ResultWriter {
         Ok(())
     }
 
+    /// Writes the rest shape, `rest.bin`: of every face, in the order of the topology.
+    ///
+    /// # Errors
+    /// Another number of faces, a refusal of the system.
+    pub fn write_rest(&self, rest: &[RestFace]) -> Result<(), ResultError> {
+        if rest.len() != self.num_faces {
+            let (found, expected) = (rest.len(), self.num_faces);
+            return Err(ResultError::Invalid {
+                what: "rest shape",
+                reason: format!("it has {found} faces, the topology {expected}"),
+            });
+        }
+        let path = self.folder().join(REST);
+        write_atomically(&path, &rest_file::encode(rest)).map_err(while_trying("write", &path))
+    }
+
     /// Appends `record` to `stats.jsonl` as one line. Numbers that are not finite become `null`.
     ///
     /// # Errors
@@ -249,7 +266,7 @@ fn check_is_ours(folder: &Path) -> Result<(), ResultError> {
 fn clear_old_result(folder: &Path) -> Result<(), ResultError> {
     // The summary first: without it nothing says that the run had ended. Then the checkpoint, since what follows it is
     // gone, and the topology: without it a half-cleared result is not taken for a whole one.
-    for name in [SUMMARY, CHECKPOINT, TOPOLOGY, STATS, PROBES] {
+    for name in [SUMMARY, CHECKPOINT, TOPOLOGY, REST, STATS, PROBES] {
         remove_if_there(&folder.join(name))?;
     }
     let frames = folder.join(FRAMES);

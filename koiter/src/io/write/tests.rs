@@ -60,6 +60,7 @@ fn files_say_units_axis_and_parts() {
         thickness: 0.0,
         vertices: 0..4,
         faces,
+        solid: None,
     };
     let parts = [part("left sheet", 0..1), part("right", 1..2)];
     let mesh = MeshWithFields {

@@ -15,6 +15,7 @@ fn result(folder: &Path) -> ResultReader {
         thickness: 0.0,
         vertices,
         faces,
+        solid: None,
     };
     let manifest = Manifest {
         title: "Sheet".to_string(),
@@ -160,6 +161,7 @@ fn coordinates_beyond_single_precision_are_refused() {
         thickness: 0.0,
         vertices: 0..3,
         faces: 0..1,
+        solid: None,
     };
     let manifest = Manifest {
         parts: vec![part],
