@@ -2,7 +2,6 @@
 
 use koiter::Vec3;
 use koiter::assembly::{Assembled, Dof, DofLayout, Energy, LocalEnergy, LocalHessian};
-use koiter::energy::Membrane;
 use koiter::energy::bending::{
     AngleProfile, ClampedEdge, CorotationalEdge, CorotationalFace, DirectorClamp,
     DiscreteKirchhoff, DiscreteShells, FaceBending, Identity, LaplacianMesh, MidEdgeAverage,
@@ -10,6 +9,7 @@ use koiter::energy::bending::{
     SymmetryEdge, SymmetryEdges, Tangent, bending_stencils, vertex_normals,
 };
 use koiter::energy::loads::{DirectorMoment, EdgeMoment, Pressure, TurnedDirectors, TurnedEdge};
+use koiter::energy::{Membrane, StrainLimit, StretchLimit};
 use koiter::material::{Homogeneous, StVenantKirchhoff};
 use koiter::mesh::{Surface, TriMesh};
 use koiter::rest::{RestFrame, rest_frames};
@@ -91,6 +91,17 @@ fn section(s: &Setup) -> Homogeneous<StVenantKirchhoff> {
 
 fn membrane(s: &Setup) -> Membrane<Homogeneous<StVenantKirchhoff>> {
     Membrane::new(&s.rest.mesh, Dof(0), s.frames.clone(), section(s))
+}
+
+/// Wide enough for the stretches of the tested state, some of which lie below the barrier.
+fn strain_limit(s: &Setup) -> StrainLimit {
+    let limit = StretchLimit {
+        stretch: 2.0,
+        begin: 1.0,
+        stiffness: 1.3,
+    };
+    let volumes: Vec<f64> = s.frames.iter().map(|f| THICKNESS * f.area).collect();
+    StrainLimit::new(&s.rest.mesh, Dof(0), s.frames.clone(), limit, &volumes)
 }
 
 /// A rigidity that differs from face to face.
@@ -341,6 +352,21 @@ fn the_membrane_conforms() {
 }
 
 #[test]
+fn the_strain_limit_conforms() {
+    let s = patch(1.0);
+    let formula = |e: &StrainLimit, f: usize, q: &_| e.formula(f, q);
+    let energy = strain_limit(&s);
+    check(energy, &s.layout, &s.q, formula, &claims(&s, true)).unwrap();
+    let planted = Planted {
+        honest: strain_limit(&s),
+        in_gradient: false,
+    };
+    let formula = |e: &Planted<StrainLimit>, f: usize, q: &_| e.honest.formula(f, q);
+    let violation = check(planted, &s.layout, &s.q, formula, &Claims::default()).unwrap_err();
+    assert_eq!(violation.property, "Hessian equals that of dual numbers");
+}
+
+#[test]
 fn the_director_clamp_conforms() {
     let s = patch(1.0);
     let stencils = bending_stencils(&s.rest.mesh, Dof(0), s.edges);
@@ -479,13 +505,13 @@ fn edges_on_planes_of_symmetry_conform() {
     check(symmetry, &s.layout, &s.q, formula, &Claims::default()).unwrap();
 }
 
-/// A membrane with one wrong entry in its gradient or in its Hessian.
-struct Planted {
-    honest: Membrane<Homogeneous<StVenantKirchhoff>>,
+/// An energy of faces with one wrong entry in its gradient or in its Hessian.
+struct Planted<L> {
+    honest: L,
     in_gradient: bool,
 }
 
-impl LocalEnergy<9, 3> for Planted {
+impl<L: LocalEnergy<9, 3>> LocalEnergy<9, 3> for Planted<L> {
     const NODE_SIZES: [usize; 3] = [3; 3];
     fn name(&self) -> &'static str {
         "planted"
@@ -522,7 +548,7 @@ impl LocalEnergy<9, 3> for Planted {
 fn a_planted_error_is_caught() {
     let s = patch(1.0);
     let section = section(&s);
-    let formula = |e: &Planted, f: usize, q: &_| {
+    let formula = |e: &Planted<Membrane<_>>, f: usize, q: &_| {
         (e.honest).formula(f, q, |strain| section.stretch_formula(f, strain))
     };
     for (in_gradient, property) in [

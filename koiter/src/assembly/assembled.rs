@@ -20,6 +20,8 @@ pub struct Assembled<L, const N: usize, const K: usize> {
     /// missing or a node is not solved for.
     slots: Vec<u32>,
     num_solved_nodes: u32,
+    /// The element that bounded the last step most.
+    limiter: Option<usize>,
 }
 
 /// Of a block that has no place in the matrix.
@@ -40,6 +42,7 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
             nodes,
             slots: Vec::new(),
             num_solved_nodes: layout.num_solved_nodes() as u32,
+            limiter: None,
         }
     }
 
@@ -205,6 +208,28 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
                 _ => NO_SLOT,
             }
         });
+    }
+
+    fn max_step(&mut self, q: &[f64], direction: &[f64]) -> f64 {
+        self.limiter = None;
+        let mut bound = 1.0;
+        if L::BOUNDS_STEPS {
+            let steps = parallel_map(self.nodes.len(), |s| {
+                let (q, direction) = (self.gather(s, q), self.gather(s, direction));
+                self.local.max_step(s, &q, &direction)
+            });
+            for (stencil, &step) in steps.iter().enumerate() {
+                if step < bound {
+                    (bound, self.limiter) = (step, Some(stencil));
+                }
+            }
+        }
+        bound
+    }
+
+    fn step_limiter(&self) -> Option<String> {
+        let element = self.local.describe(self.limiter?);
+        Some(format!("{} at {element}", self.name()))
     }
 
     fn is_admissible(&self, q: &[f64]) -> bool {

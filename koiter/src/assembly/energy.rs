@@ -56,6 +56,8 @@ impl<const N: usize> LocalHessian<N> {
 pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
     /// Unknowns of each local node; they sum to `N`.
     const NODE_SIZES: [usize; K];
+    /// Whether [`Self::max_step`] says anything: most energies are spared the question.
+    const BOUNDS_STEPS: bool = false;
     /// Name in reports.
     fn name(&self) -> &'static str;
     /// Number of elements.
@@ -75,6 +77,10 @@ pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
         let mut local = self.hessian(stencil, q);
         project_to_psd(&mut local.hessian, kept);
         local
+    }
+    /// The largest fraction of `direction` that may be taken from `q`, at most 1; φ_s is defined on all of it.
+    fn max_step(&self, _stencil: usize, _q: &SVector<f64, N>, _direction: &SVector<f64, N>) -> f64 {
+        1.0
     }
     /// Whether φ_s is defined at `q`.
     fn is_admissible(&self, _stencil: usize, _q: &SVector<f64, N>) -> bool {

@@ -3,6 +3,7 @@
 mod gravity;
 mod inertia;
 mod membrane;
+mod strain_limit;
 
 pub mod bending;
 pub mod loads;
@@ -10,3 +11,4 @@ pub mod loads;
 pub use gravity::Gravity;
 pub use inertia::Inertia;
 pub use membrane::Membrane;
+pub use strain_limit::{StrainLimit, StretchLimit};

@@ -11,6 +11,7 @@
 mod closest;
 mod crossing;
 mod jet;
+mod log_barrier;
 mod wing;
 
 pub use closest::{
@@ -19,4 +20,5 @@ pub use closest::{
 };
 pub use crossing::segment_meets_triangle;
 pub use jet::{Jet, Real};
+pub use log_barrier::{log_barrier, log_barrier_slope_quotient};
 pub use wing::{Wing, WingFunctional, hinge_angle};

@@ -35,6 +35,21 @@ pub enum BuildError {
         /// What is wrong.
         error: CompositionError,
     },
+    /// A face that is stretched to its limit at the start.
+    #[error(
+        "shell '{shell}': face {face} starts stretched to {stretch:.4} times its rest length, but strain_limit.stretch is \
+         {limit}: raise the limit, or start nearer to the rest shape"
+    )]
+    StretchedStart {
+        /// Name of the shell.
+        shell: String,
+        /// Index of the face.
+        face: usize,
+        /// Its largest length over rest length.
+        stretch: f64,
+        /// The limit.
+        limit: f64,
+    },
     /// The barrier reaches further than the elements are large.
     #[error(
         "shell '{shell}': surfaces repel within {reach:.2e} m (d_hat and contact thickness), but its mean edge is \

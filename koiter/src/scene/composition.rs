@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use super::material_models::MaterialModel;
 use super::model::{BendingModel, Shell};
 use crate::Vec3;
+use crate::energy::StretchLimit;
 use crate::material::{
     ByFace, Homogeneous, Layer, Layered, Material, ModuliError, NeoHookean, Orthotropic,
     OrthotropicModuli, Section, StVenantKirchhoff, TensionField,
@@ -25,6 +26,8 @@ pub struct Composition {
     pub by_face: FaceValues,
     /// Prescribed rest state.
     pub rest: RestPrescription,
+    /// A stretch of the midsurface that is never reached, whatever the law.
+    pub stretch_limit: Option<StretchLimit>,
 }
 
 /// How stress follows from strain, with the constants that not all laws have.
@@ -248,6 +251,7 @@ impl Shell {
             axes,
             by_face,
             rest,
+            ..
         } = &self.composition;
         let count = |what, found: usize| match found == faces {
             true => Ok(()),

@@ -11,11 +11,11 @@ use super::position_bending::PositionBending;
 use super::vertex_directors::kirchhoff_bending;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
-use crate::energy::Membrane;
 use crate::energy::bending::{
     AngleProfile, DirectorShape, ExtraUnknowns, Identity, LaplacianMesh, MidEdgeBending, Sine,
     Tangent, bending_stencils,
 };
+use crate::energy::{Membrane, StrainLimit};
 use crate::integrate::{ShellPart, relax_directors};
 use crate::material::Section;
 use crate::mesh::Surface;
@@ -49,6 +49,7 @@ impl Elastic {
                     error,
                 }
             })?;
+            elastic.add_strain_limit(shell, &part, &unknowns.layout, q)?;
             elastic
                 .add(shell, part, &unknowns.layout, q)
                 .map_err(|error| BuildError::Rest {
@@ -58,6 +59,35 @@ impl Elastic {
         }
         elastic.masses.truncate(unknowns.layout.num_solved_dofs());
         Ok(elastic)
+    }
+
+    /// The barrier of a shell whose stretch is limited.
+    fn add_strain_limit(
+        &mut self,
+        shell: &Shell,
+        part: &ShellPart,
+        layout: &DofLayout,
+        q: &[f64],
+    ) -> Result<(), BuildError> {
+        let Some(limit) = shell.composition.stretch_limit else {
+            return Ok(());
+        };
+        let frames = part.frames.iter().enumerate();
+        let volumes: Vec<f64> = frames
+            .map(|(face, frame)| frame.area * shell.face_thickness(face))
+            .collect();
+        let first = part.first_vertex;
+        let energy = StrainLimit::new(&part.mesh, first, part.frames.clone(), limit, &volumes);
+        if let Some((face, stretch)) = energy.first_beyond(|face| part.face_corners(face, q)) {
+            return Err(BuildError::StretchedStart {
+                shell: shell.name.clone(),
+                face,
+                stretch,
+                limit: limit.stretch,
+            });
+        }
+        self.energies.push(Box::new(Assembled::new(energy, layout)));
+        Ok(())
     }
 
     fn add(

@@ -5,6 +5,7 @@ use crate::mesh::{EdgeId, FaceId, VertexId};
 
 pub use super::composition::{Composition, FaceValues, MaterialLaw, RestPrescription};
 pub use super::material_models::MaterialModel;
+pub use crate::energy::StretchLimit;
 pub use crate::material::Layer;
 pub use crate::mesh::Surface;
 

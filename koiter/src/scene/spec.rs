@@ -23,6 +23,7 @@ mod constraint;
 mod load;
 mod material;
 mod shape;
+mod strain_limit;
 mod symmetry;
 
 pub use check::MAX_STEPS;
@@ -38,6 +39,7 @@ pub use shape::{
     PanelSpec, TorusSpec, VeeSpec, ZoneSpec,
 };
 
+pub use strain_limit::StrainLimitSpec;
 pub use symmetry::SymmetrySpec;
 
 use schemars::JsonSchema;
@@ -150,6 +152,9 @@ pub struct ShellSpec {
     /// `[11, 12, 22]` in the basis of the edges from a face's first corner to the second and third.
     #[serde(default)]
     pub faces: Option<String>,
+    /// A stretch that is never reached; default: none.
+    #[serde(default)]
+    pub strain_limit: Option<StrainLimitSpec>,
     /// Start velocity of all vertices [m/s].
     #[serde(default)]
     pub velocity: [f64; 3],
@@ -384,8 +389,15 @@ impl Default for OutputSpec {
 }
 
 /// Names of the energies that a probe can measure; one that a scene has not is 0.
-pub const ENERGY_NAMES: [&str; 7] = [
-    "membrane", "bending", "clamps", "gravity", "loads", "kinetic", "contact",
+pub const ENERGY_NAMES: [&str; 8] = [
+    "membrane",
+    "strain_limit",
+    "bending",
+    "clamps",
+    "gravity",
+    "loads",
+    "kinetic",
+    "contact",
 ];
 
 /// Names of the face fields a run can write.

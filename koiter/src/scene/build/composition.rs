@@ -82,6 +82,8 @@ pub(super) fn compose(
             stretch: shell.rest_stretch,
             curvature: shell.rest_curvature,
         },
+        stretch_limit: (shell.strain_limit.as_ref())
+            .map(|limit| limit.resolve(nominal.youngs_modulus)),
     };
     Ok((nominal, composition))
 }

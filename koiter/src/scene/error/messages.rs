@@ -132,6 +132,27 @@ fn every_kind_of_mistake_has_a_place_and_says_what_to_do() {
             "expected a pair [time, value]",
         ),
         (
+            material,
+            "material = \"cotton\"\nstrain_limit.stretch = 0.1",
+            Kind::OutOfRange,
+            6,
+            "stretch must be larger than 1, the length at rest, but it is 0.1 | a limit of 10 % is stretch = 1.1",
+        ),
+        (
+            material,
+            "material = \"cotton\"\nstrain_limit = { stretch = 1.1, begin = 1.1 }",
+            Kind::OutOfRange,
+            6,
+            "begin must be at least 1 and less than stretch = 1.1, but it is 1.1",
+        ),
+        (
+            material,
+            "material = \"cotton\"\nstrain_limit = { stretch = 1.1, stiffness = 0 }",
+            Kind::OutOfRange,
+            6,
+            "stiffness must be larger than 0, but it is 0 Pa",
+        ),
+        (
             "dt = 0.1",
             "dt = 1e-12",
             Kind::OutOfRange,

@@ -5,6 +5,7 @@ mod loads;
 use std::collections::HashSet;
 
 use super::material::check_material;
+use super::strain_limit::check_strain_limit;
 use super::{
     ConstraintSpec, ENERGY_NAMES, FIELD_NAMES, MeshSpec, ObstacleSpec, ProbeQuantity, ProbeSpec,
     RestSpec, RotationSpec, SceneSpec, SelectSpec, ShellSpec, SymmetrySpec,
@@ -105,6 +106,9 @@ fn check_shell(path: &str, shell: &ShellSpec) -> Checked {
         check_mesh(&at("rest_mesh"), mesh)?;
     }
     check_material(path, shell)?;
+    if let Some(limit) = &shell.strain_limit {
+        check_strain_limit(&at("strain_limit"), limit)?;
+    }
     not_negative(&at("friction"), shell.friction, "")?;
     not_negative(&at("contact_thickness"), shell.contact_thickness, "m")
 }
