@@ -109,7 +109,6 @@ fn cell_json(cell: &Cell) -> Value {
         "angle_over_pi": cell.angle,
         "model": cell.model.info().name,
         "energy": cell.energy,
-        "start": "bisector",
         "published": published.map(|p| p.energy),
         "tolerance": published.map(|p| p.tolerance),
         "within": published.map(|p| p.holds(cell.energy)),
@@ -145,7 +144,7 @@ fn text(cells: &[Cell], models: &[BendingModel], vertices: usize) -> String {
     }
     out.push_str("\n✓ inside, ✗ outside of the tolerance of benchmarks/creased-vee/SOURCE.md, which holds for level 0. ");
     out.push_str(
-        "Directors start in the bisecting plane; saddles are left along negative curvature.",
+        "Directors start in the bisecting plane; unstable ones are turned off it to either side at random, the same each time.",
     );
     out
 }

@@ -254,4 +254,12 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
             gradient_norm: norms[worst],
         })
     }
+
+    fn at_held_positions<'a>(
+        &'a self,
+        q: &[f64],
+        layout: &DofLayout,
+    ) -> Option<Box<dyn Energy + 'a>> {
+        (self.local).at_held_positions(&|stencil| self.gather(stencil, q), layout)
+    }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{Dof, HessianBuilder, Pattern, PatternBuilder, project_to_psd};
+use super::{Dof, DofLayout, HessianBuilder, Pattern, PatternBuilder, project_to_psd};
 
 /// What to do with negative curvature of an energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -88,6 +88,14 @@ pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
     }
     /// The element in the user's terms.
     fn describe(&self, stencil: usize) -> String;
+    /// See [`Energy::at_held_positions`]; `unknowns` gives those of an element.
+    fn at_held_positions<'a>(
+        &'a self,
+        _unknowns: &(dyn Fn(usize) -> SVector<f64, N> + Sync),
+        _layout: &DofLayout,
+    ) -> Option<Box<dyn Energy + 'a>> {
+        None
+    }
 }
 
 /// The element of an energy that resists most, for reports.
@@ -142,6 +150,15 @@ pub trait Energy: Send + Sync {
     }
     /// What limited the last step, in the user's terms.
     fn step_limiter(&self) -> Option<String> {
+        None
+    }
+    /// The same energy over its directors alone, with positions held at those of `q`; `None` of energies that have no
+    /// directors, or no cheaper form.
+    fn at_held_positions<'a>(
+        &'a self,
+        _q: &[f64],
+        _layout: &DofLayout,
+    ) -> Option<Box<dyn Energy + 'a>> {
         None
     }
 }

@@ -5,8 +5,8 @@ use std::ops::Range;
 use crate::assembly::{ConfigurationSpace, DofLayout, Energy};
 use crate::rest::RestError;
 use crate::solve::{
-    HessianChoice, LinearWorkspace, NewtonOptions, Problem, SolveError, leave_saddles_by_node,
-    minimize, minimize_stably,
+    HessianChoice, LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError,
+    TrustRegionOptions, leave_saddle, leave_saddles_by_node, minimize, minimize_in_trust_region,
 };
 
 /// Directors move by angles; the step is the largest of them [rad]. Points of edges move by lengths, in units of the
@@ -40,6 +40,10 @@ pub fn relax_directors(
     range: Range<usize>,
     q: &mut [f64],
 ) -> Result<(), RestError> {
+    let positions = q.to_vec();
+    if let Some(mut held) = bending.at_held_positions(&positions, layout) {
+        return relax(vec![held.as_mut()], layout, range, 1.0, q, find_directors);
+    }
     relax(vec![bending], layout, range, 1.0, q, find_directors)
 }
 
@@ -91,21 +95,30 @@ fn relax<'a>(
     find_minimum(&mut problem, q).map_err(|reason| RestError::Directors { reason })
 }
 
-/// Iterations after which it is looked whether the energy still falls, and how often.
+/// A promised fall of the energy that counts as none, relative. Where directors are nearly free, as those of DCS on a
+/// crease of a right angle, valleys are flat to fourth order and angles are not to be had; the energy is.
+const DECREMENT: f64 = 1e-7;
+
+/// Times that saddles are left: each costs energy, so they come to an end, but no bound is known.
+const MAX_ROUNDS: usize = 20;
+
+/// Factorisations of one descent.
+const MAX_FACTORIZATIONS: usize = 500;
+
+/// Iterations of the first descent of directors; and those after which it is looked whether the energy of points of edges
+/// still falls, and how often.
 const ROUND: usize = 50;
-const MAX_ROUNDS: usize = 8;
+const MAX_ROUNDS_OF_POINTS: usize = 8;
 
-/// A fall of the energy in a whole round that counts as none, relative.
-const NO_FALL: f64 = 1e-9;
-
-/// The same for points of edges, which slide in degenerate patches for thousands of iterations: the energy falls by orders
-/// of magnitude within 100, then by less than this in each 50, at the latest from 250 on (irregular triangles).
+/// A fall in a whole round that counts as none for points of edges, relative. They slide in degenerate patches for
+/// thousands of iterations: the energy falls by orders of magnitude within 100, then by less than this in each 50, at the
+/// latest from 250 on (irregular triangles).
 const NO_FALL_OF_POINTS: f64 = 0.05;
 
 /// How far directors are turned off the saddles they stand on [rad]: on sharp creases minima lie near right angles.
 const OFF_SADDLE: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Directors that stand on saddles are turned off them, all at once.
+/// Directors that stand on saddles are turned off them, all at once; then what saddles are left, one by one.
 fn find_directors(problem: &mut Problem<'_>, q: &mut [f64]) -> Result<(), String> {
     // Projected, the quadratic energy of DSO took 12 to 37 iterations on small patches: with positions held, elements
     // are projected for motions that do not happen. Exact, it takes two.
@@ -116,32 +129,53 @@ fn find_directors(problem: &mut Problem<'_>, q: &mut [f64]) -> Result<(), String
     };
     let mut workspace = LinearWorkspace::default();
     let in_words = |error: SolveError| error.to_string();
-    let first = minimize(problem, &options, &mut workspace, q).map_err(in_words)?;
-    if first.converged && first.ends_definite {
-        return Ok(());
+    match minimize(problem, &options, &mut workspace, q) {
+        Ok(first) if first.converged && first.ends_definite => return Ok(()),
+        // Directors that have turned by a right angle out of both faces have no stiffness left when projected.
+        Ok(_) | Err(SolveError::Indefinite { .. }) => {}
+        Err(error) => return Err(error.to_string()),
     }
-    let (saddle, at_saddle) = (q.to_vec(), energy(problem, q));
+    let mut least = (energy(problem, q), q.to_vec());
     leave_saddles_by_node(problem, &mut workspace, OFF_SADDLE, q).map_err(in_words)?;
-    let options = NewtonOptions {
-        hessian: HessianChoice::ExactShifted,
-        ..options
-    };
-    let mut before = f64::INFINITY;
-    for _ in 0..MAX_ROUNDS {
-        let report = minimize_stably(problem, &options, &mut workspace, q).map_err(in_words)?;
-        let after = energy(problem, q);
-        // Where directors are nearly free, as those of DCS on a crease of a right angle, steps stay large while the
-        // energy no longer changes.
-        let is_still = before - after <= NO_FALL * after.abs();
-        before = after;
-        if report.converged || is_still {
-            if first.converged && at_saddle < after {
-                q.copy_from_slice(&saddle);
-            }
-            return Ok(());
+    for round in 0..MAX_ROUNDS {
+        let is_definite = descend(problem, &mut workspace, q)?;
+        let found = energy(problem, q);
+        let gain = least.0 - found;
+        if gain > 0.0 {
+            least = (found, q.to_vec());
+        }
+        let is_still = round > 0 && gain <= DECREMENT * found.abs();
+        let mut report = NewtonReport::default();
+        if is_definite
+            || is_still
+            || !leave_saddle(problem, &mut workspace, TOLERANCE, q, &mut report)
+                .map_err(in_words)?
+        {
+            break;
         }
     }
-    Err(still_falling(MAX_ROUNDS + 1))
+    q.copy_from_slice(&least.1);
+    Ok(())
+}
+
+/// To where the energy no longer falls; whether its Hessian is positive definite there.
+fn descend(
+    problem: &mut Problem<'_>,
+    workspace: &mut LinearWorkspace,
+    q: &mut [f64],
+) -> Result<bool, String> {
+    let options = TrustRegionOptions {
+        tolerance: TOLERANCE,
+        decrement: DECREMENT,
+        max_factorizations: MAX_FACTORIZATIONS,
+    };
+    let report = minimize_in_trust_region(problem, &options, workspace, q)
+        .map_err(|error| error.to_string())?;
+    if report.converged {
+        Ok(report.ends_definite)
+    } else {
+        Err(still_falling(report.factorizations))
+    }
 }
 
 /// To an energy that no longer falls: the points themselves do not come to rest.
@@ -154,7 +188,7 @@ fn find_points(problem: &mut Problem<'_>, q: &mut [f64]) -> Result<(), String> {
     };
     let mut workspace = LinearWorkspace::default();
     let mut before = f64::INFINITY;
-    for _ in 0..MAX_ROUNDS {
+    for _ in 0..MAX_ROUNDS_OF_POINTS {
         let report = minimize(problem, &options, &mut workspace, q)
             .map_err(|error: SolveError| error.to_string())?;
         let after = energy(problem, q);
@@ -163,13 +197,13 @@ fn find_points(problem: &mut Problem<'_>, q: &mut [f64]) -> Result<(), String> {
         }
         before = after;
     }
-    Err(still_falling(MAX_ROUNDS))
+    Err(still_falling(ROUND * MAX_ROUNDS_OF_POINTS))
 }
 
 fn energy(problem: &Problem<'_>, q: &[f64]) -> f64 {
     problem.energies.iter().map(|energy| energy.value(q)).sum()
 }
 
-fn still_falling(rounds: usize) -> String {
-    format!("the energy still falls after {} iterations", ROUND * rounds)
+fn still_falling(iterations: usize) -> String {
+    format!("the energy still falls after {iterations} iterations")
 }

@@ -10,6 +10,7 @@ mod ordering;
 mod pace;
 mod saddle;
 mod supernodal;
+mod trust_region;
 mod workspace;
 
 pub use cholesky::{LinearSolver, NotPositiveDefinite, SparseCholesky};
@@ -22,4 +23,5 @@ pub use newton::{
 pub use ordering::{EliminationOrder, NodeOrdering, nested_dissection};
 pub use saddle::{leave_saddle, leave_saddles_by_node};
 pub use supernodal::Supernodal;
+pub use trust_region::{TrustRegionOptions, TrustRegionReport, minimize_in_trust_region};
 pub use workspace::{LinearWorkspace, WorkspaceHistory};

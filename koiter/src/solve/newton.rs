@@ -46,9 +46,6 @@ pub enum HessianChoice {
     Projected,
     /// Exact from the first iteration on, projected where the exact Hessian is not positive definite.
     ExactWhereConvex,
-    /// Exact, with a multiple of its diagonal added where it is not positive definite: for problems of many small saddles,
-    /// whose elements are too stiff when projected.
-    ExactShifted,
 }
 
 /// What happened.
@@ -290,7 +287,7 @@ fn factorized_system(
             report,
         )?;
         let start = Instant::now();
-        let may_shift = projection == PsdProjection::Clamp || pace.may_shift();
+        let may_shift = projection == PsdProjection::Clamp;
         let factorized = if may_shift {
             workspace.factorize_shifted(problem.is_fixed)
         } else {

@@ -45,7 +45,7 @@ impl Pace {
     pub(super) fn new(choice: HessianChoice) -> Self {
         let level = match choice {
             HessianChoice::Projected => 0,
-            HessianChoice::ExactWhereConvex | HessianChoice::ExactShifted => KEPT.len() - 1,
+            HessianChoice::ExactWhereConvex => KEPT.len() - 1,
         };
         Self {
             choice,
@@ -67,16 +67,11 @@ impl Pace {
         }
     }
 
-    /// Whether a matrix that is not positive definite is shifted until it is.
-    pub(super) fn may_shift(&self) -> bool {
-        self.choice == HessianChoice::ExactShifted
-    }
-
     /// The matrix was not positive definite.
     pub(super) fn indefinite(&mut self) {
         self.level = match self.choice {
             HessianChoice::Projected => self.level - 1,
-            HessianChoice::ExactWhereConvex | HessianChoice::ExactShifted => 0,
+            HessianChoice::ExactWhereConvex => 0,
         };
         self.next_wait = (2 * self.next_wait).clamp(1, LONGEST_WAIT);
         self.wait = self.next_wait;

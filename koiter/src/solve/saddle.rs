@@ -9,12 +9,16 @@
 use nalgebra::DMatrix;
 
 use super::newton::{NewtonReport, Problem, SolveError, not_finite};
-use super::workspace::LinearWorkspace;
+use super::workspace::{LinearWorkspace, mean_size};
 use crate::assembly::{HessianBuilder, NodeId, PsdProjection};
 
 /// Inverse iterations before the curvature counts as zero up to round-off. Each turns the vector towards v by the ratio
 /// of shifted eigenvalues, which is large, for the shift is hardly more than enough.
 const MAX_TURNS: usize = 60;
+
+/// Curvature of a node that counts as none, relative to the mean. Left one after the other, nodes of such a curvature
+/// topple like dominoes, one an iteration.
+const HARDLY_ANY: f64 = 0.1;
 
 /// Doublings of the way along v: from 10 tolerances to far beyond any scene.
 const MAX_DOUBLINGS: usize = 50;
@@ -42,8 +46,8 @@ pub fn leave_saddle(
     Ok(direction.is_some_and(|direction| descend(problem, tolerance, &direction, q)))
 }
 
-/// Moves every node whose own block of the exact Hessian has negative curvature off along it, by `way` and to either side
-/// at random (always the same way); whether there was one.
+/// Moves every node whose own block of the exact Hessian has negative curvature, or nearly none, off along it, by `way`
+/// and to either side at random (always the same way); whether there was one.
 ///
 /// Where many nodes stand on saddles of their own, as the directors along a crease do, [`leave_saddle`] would leave them
 /// one after the other.
@@ -62,6 +66,7 @@ pub fn leave_saddles_by_node(
     workspace.update_pattern(&mut problem.energies, problem.layout, q);
     assemble_exact(problem, workspace, q)?;
     let matrix = workspace.matrix.as_ref().expect("the matrix was assembled");
+    let hardly_any = HARDLY_ANY * mean_size(&workspace.diagonal(), problem.is_fixed);
     let mut direction = vec![0.0; q.len()];
     let mut count = 0;
     for node in (0..problem.layout.num_solved_nodes() as u32).map(NodeId) {
@@ -77,7 +82,7 @@ pub fn leave_saddles_by_node(
         });
         let eigen = block.symmetric_eigen();
         let least = eigen.eigenvalues.imin();
-        if eigen.eigenvalues[least] < 0.0 {
+        if !problem.is_fixed[start] && eigen.eigenvalues[least] < hardly_any {
             count += 1;
             // Steele, Lea and Flood (2014), one bit of it.
             let mixed = (count as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -98,7 +103,7 @@ pub fn leave_saddles_by_node(
 }
 
 /// The exact Hessian into the workspace, with the rows of held unknowns taken out; returns the gradient.
-fn assemble_exact(
+pub(super) fn assemble_exact(
     problem: &Problem<'_>,
     workspace: &mut LinearWorkspace,
     q: &[f64],
@@ -212,10 +217,18 @@ mod tests {
     use crate::assembly::{
         Assembled, ConfigurationSpace, Dof, DofLayout, LocalEnergy, LocalHessian,
     };
-    use crate::solve::{HessianChoice, NewtonOptions, minimize, minimize_stably};
+    use crate::solve::{
+        HessianChoice, NewtonOptions, TrustRegionOptions, minimize, minimize_in_trust_region,
+        minimize_stably,
+    };
 
-    /// (x² − 1)² + y²: a saddle at the origin, minima at x = ±1.
-    struct DoubleWell;
+    /// (x² − w)² + y² + c x y. With w = 1 and c = 0 a saddle at the origin, minima at x = ±1.
+    struct DoubleWell {
+        w: f64,
+        c: f64,
+    }
+
+    const PLAIN_WELL: DoubleWell = DoubleWell { w: 1.0, c: 0.0 };
 
     impl LocalEnergy<2, 2> for DoubleWell {
         const NODE_SIZES: [usize; 2] = [1; 2];
@@ -236,11 +249,11 @@ mod tests {
             (local.value, local.gradient)
         }
         fn hessian(&self, _: usize, q: &SVector<f64, 2>) -> LocalHessian<2> {
-            let (x, y) = (q[0], q[1]);
+            let (x, y, w, c) = (q[0], q[1], self.w, self.c);
             LocalHessian {
-                value: (x * x - 1.0).powi(2) + y * y,
-                gradient: SVector::from([4.0 * x * (x * x - 1.0), 2.0 * y]),
-                hessian: SMatrix::from([[12.0 * x * x - 4.0, 0.0], [0.0, 2.0]]),
+                value: (x * x - w).powi(2) + y * y + c * x * y,
+                gradient: SVector::from([4.0 * x * (x * x - w) + c * y, 2.0 * y + c * x]),
+                hessian: SMatrix::from([[12.0 * x * x - 4.0 * w, c], [c, 2.0]]),
             }
         }
         fn projected_hessian(
@@ -273,7 +286,7 @@ mod tests {
     fn ends(start: [f64; 2], is_fixed: [bool; 2]) -> ([f64; 2], [f64; 2], usize) {
         let mut layout = DofLayout::new();
         layout.push_nodes(2, 1, true);
-        let mut energy = Assembled::new(DoubleWell, &layout);
+        let mut energy = Assembled::new(PLAIN_WELL, &layout);
         let mut problem = Problem {
             energies: vec![&mut energy],
             layout: &layout,
@@ -312,5 +325,85 @@ mod tests {
         assert_eq!((plain, saddles), (stable, 0));
         let (_, held, saddles) = ends([0.0, 0.3], [true, false]);
         assert_eq!((held[0], saddles), (0.0, 0));
+    }
+
+    /// Runs `solve` on a double well.
+    fn on_well<T>(
+        well: DoubleWell,
+        is_fixed: [bool; 2],
+        solve: impl FnOnce(&mut Problem<'_>, &mut LinearWorkspace) -> T,
+    ) -> T {
+        let mut layout = DofLayout::new();
+        layout.push_nodes(2, 1, true);
+        let mut energy = Assembled::new(well, &layout);
+        let mut problem = Problem {
+            energies: vec![&mut energy],
+            layout: &layout,
+            space: &Plain,
+            is_fixed: &is_fixed,
+            target: &[0.0; 2],
+        };
+        solve(&mut problem, &mut LinearWorkspace::default())
+    }
+
+    #[test]
+    fn nodes_on_saddles_of_their_own_are_moved_off_and_others_stay() {
+        let way = 0.5;
+        let leave = |start: [f64; 2], is_fixed: [bool; 2]| {
+            on_well(PLAIN_WELL, is_fixed, |problem, workspace| {
+                let mut q = start;
+                let left = leave_saddles_by_node(problem, workspace, way, &mut q).unwrap();
+                (left, q)
+            })
+        };
+        let (left, q) = leave([0.0, 0.3], [false; 2]);
+        assert!(left && q[0].abs() == way && q[1] == 0.3, "{q:?}");
+        // The same side each time: runs can be repeated.
+        assert_eq!(leave([0.0, 0.3], [false; 2]).1, q);
+        assert_eq!(leave([0.8, 0.3], [false; 2]), (false, [0.8, 0.3]));
+        assert_eq!(leave([0.0, 0.3], [true, false]), (false, [0.0, 0.3]));
+    }
+
+    #[test]
+    fn a_trust_region_goes_down_where_the_exact_matrix_is_indefinite() {
+        let options = TrustRegionOptions {
+            tolerance: 1e-9,
+            decrement: 0.0,
+            max_factorizations: 100,
+        };
+        // The second has an unknown without stiffness of its own at the start, so no multiple of its diagonal will do;
+        // its minima are at y = −x / 2, 4 x³ = x / 2.
+        let flat = DoubleWell { w: 0.0, c: 1.0 };
+        let x = 0.125f64.sqrt();
+        for (well, start, end) in [
+            (PLAIN_WELL, [0.1, 0.3], [1.0, 0.0]),
+            (flat, [0.0, -0.3], [x, -0.5 * x]),
+        ] {
+            on_well(well, [false; 2], |problem, workspace| {
+                let mut q = start;
+                let report =
+                    minimize_in_trust_region(problem, &options, workspace, &mut q).unwrap();
+                assert!(report.converged && report.ends_definite, "{report:?}");
+                // Steps below 1e-9 and quadratic convergence.
+                assert!(
+                    (q[0] - end[0]).abs() < 1e-9 && (q[1] - end[1]).abs() < 1e-9,
+                    "{q:?}"
+                );
+            });
+        }
+    }
+
+    #[test]
+    fn a_trust_region_ends_on_a_saddle_it_starts_from_and_says_that_it_is_one() {
+        let options = TrustRegionOptions {
+            tolerance: 1e-9,
+            decrement: 0.0,
+            max_factorizations: 100,
+        };
+        on_well(PLAIN_WELL, [false; 2], |problem, workspace| {
+            let mut q = [0.0, 0.0];
+            let report = minimize_in_trust_region(problem, &options, workspace, &mut q).unwrap();
+            assert!(report.converged && !report.ends_definite && q == [0.0; 2]);
+        });
     }
 }

@@ -185,8 +185,9 @@ impl LinearWorkspace {
             return Ok(0);
         };
         let diagonal = self.diagonal();
+        let sizes = sizes(&diagonal);
         for (attempt, shift) in SHIFTS.iter().enumerate() {
-            match self.factorize_with(&diagonal, *shift, is_fixed) {
+            match self.factorize_with(&diagonal, &sizes, *shift, is_fixed) {
                 Ok(()) => return Ok(attempt + 1),
                 Err(dof) => failure = dof,
             }
@@ -198,8 +199,9 @@ impl LinearWorkspace {
     /// what was added to the diagonal; `None` if no multiple is enough.
     pub(super) fn factorize_barely(&mut self, is_fixed: &[bool]) -> Option<Vec<f64>> {
         let diagonal = self.diagonal();
-        let enough = (SHIFTS.iter())
-            .position(|shift| self.factorize_with(&diagonal, *shift, is_fixed).is_ok())?;
+        let sizes = sizes(&diagonal);
+        let mut try_shift = |shift| self.factorize_with(&diagonal, &sizes, shift, is_fixed);
+        let enough = SHIFTS.iter().position(|shift| try_shift(*shift).is_ok())?;
         let mut large = SHIFTS[enough];
         let mut small = match enough {
             0 => LEAST_SHIFT,
@@ -207,27 +209,31 @@ impl LinearWorkspace {
         };
         for _ in 0..SHIFT_BISECTIONS {
             let middle = (small * large).sqrt();
-            match self.factorize_with(&diagonal, middle, is_fixed) {
+            match try_shift(middle) {
                 Ok(()) => large = middle,
                 Err(_) => small = middle,
             }
         }
-        self.factorize_with(&diagonal, large, is_fixed).ok()?;
+        try_shift(large).ok()?;
         let shifted = self.diagonal().into_iter().zip(&diagonal);
         Some(shifted.map(|(after, before)| after - before).collect())
     }
 
-    fn diagonal(&self) -> Vec<f64> {
+    /// The diagonal of the assembled matrix.
+    pub(super) fn diagonal(&self) -> Vec<f64> {
         let matrix = self.matrix.as_ref().expect("the matrix was assembled");
         let positions = matrix.pattern.diagonal_positions().iter();
         positions.map(|&p| matrix.values[p as usize]).collect()
     }
 
-    /// Factorises with `diagonal + shift |diagonal|` for the diagonal of free unknowns: an exact Hessian may have negative
-    /// entries there.
-    fn factorize_with(
+    /// Factorises with `diagonal + shift · scale` for the diagonal of free unknowns.
+    ///
+    /// # Errors
+    /// The unknown whose pivot is not positive.
+    pub(super) fn factorize_with(
         &mut self,
         diagonal: &[f64],
+        scale: &[f64],
         shift: f64,
         is_fixed: &[bool],
     ) -> Result<(), usize> {
@@ -235,8 +241,20 @@ impl LinearWorkspace {
         let pattern = Arc::clone(&matrix.pattern);
         let positions = pattern.diagonal_positions().iter().enumerate();
         for (dof, &position) in positions.filter(|(dof, _)| !is_fixed[*dof]) {
-            matrix.values[position as usize] = diagonal[dof] + shift * diagonal[dof].abs();
+            matrix.values[position as usize] = diagonal[dof] + shift * scale[dof];
         }
         self.factor.factorize(matrix).map_err(|error| error.dof)
     }
+}
+
+/// Absolute values: an exact Hessian may have negative entries on its diagonal.
+fn sizes(diagonal: &[f64]) -> Vec<f64> {
+    diagonal.iter().map(|d| d.abs()).collect()
+}
+
+/// The mean of the sizes of the entries that are not fixed.
+pub(super) fn mean_size(diagonal: &[f64], is_fixed: &[bool]) -> f64 {
+    let free = diagonal.iter().zip(is_fixed).filter(|(_, fixed)| !**fixed);
+    let (sum, count) = free.fold((0.0, 0), |(sum, count), (d, _)| (sum + d.abs(), count + 1));
+    sum / f64::from(count.max(1))
 }

@@ -24,11 +24,12 @@ use std::marker::PhantomData;
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
+use super::held_mid_edge::{HeldEdge, HeldMidEdge};
 use super::hinge::turning_angle;
 use super::profile::AngleProfile;
 use super::quadratic_form::{Functional, QuadraticForm, WIDTH, WingFunctionals, dot, scaled_sum};
 use crate::Vec3;
-use crate::assembly::{Dof, LocalEnergy, LocalHessian};
+use crate::assembly::{Assembled, Dof, DofLayout, Energy, LocalEnergy, LocalHessian, parallel_map};
 use crate::geometry::{Real, Wing, hinge_angle};
 use crate::material::Section;
 use crate::mesh::{FaceId, TriMesh};
@@ -228,10 +229,18 @@ impl<P: AngleProfile, S: Section> MidEdgeBending<P, S> {
         })
     }
 
-    /// Energy, ∂E/∂q and ∂²E/∂q².
-    fn response(&self, stencil: usize, corners: &[Corner; 3]) -> (f64, Vector3<f64>, Matrix3<f64>) {
+    /// The angles of a face.
+    pub(super) fn angles(&self, stencil: usize) -> [Dof; 3] {
+        self.stencils[stencil].angles
+    }
+
+    /// Energy, ∂E/∂q and ∂²E/∂q² at the curvatures q.
+    pub(super) fn response(
+        &self,
+        stencil: usize,
+        curvatures: &Vector3<f64>,
+    ) -> (f64, Vector3<f64>, Matrix3<f64>) {
         let form = self.form_matrix(stencil);
-        let curvatures = Vector3::from_fn(|c, _| corners[c].curvature());
         let change = form * curvatures - self.rest_forms[stencil];
         let response = (self.section.bend(stencil, &change)).scaled(self.frames[stencil].area);
         let transposed = form.transpose();
@@ -244,7 +253,7 @@ impl<P: AngleProfile, S: Section> MidEdgeBending<P, S> {
 
     fn derivatives(&self, stencil: usize, q: &SVector<f64, 21>, kept: f64) -> LocalHessian<21> {
         let corners = self.corners(stencil, q);
-        let (value, moments, tangent) = self.response(stencil, &corners);
+        let (value, moments, tangent) = self.response(stencil, &curvatures_of(&corners));
         let mut hessian = SMatrix::<f64, 21, 21>::zeros();
         let mut jacobian = [[0.0; 21]; 3];
         for (c, corner) in corners.iter().enumerate() {
@@ -327,6 +336,10 @@ impl<P: AngleProfile, S: Section> MidEdgeBending<P, S> {
     }
 }
 
+fn curvatures_of(corners: &[Corner; 3]) -> Vector3<f64> {
+    Vector3::from_fn(|c, _| corners[c].curvature())
+}
+
 /// Where the unknowns of the hinge at corner `c` stand among those of the face.
 fn places(c: usize) -> [usize; 13] {
     let nodes = [(c + 1) % 3, (c + 2) % 3, c, 3 + c];
@@ -398,12 +411,12 @@ impl<P: AngleProfile, S: Section> LocalEnergy<21, 9> for MidEdgeBending<P, S> {
 
     fn value(&self, stencil: usize, q: &SVector<f64, 21>) -> f64 {
         let corners = self.corners(stencil, q);
-        self.response(stencil, &corners).0
+        self.response(stencil, &curvatures_of(&corners)).0
     }
 
     fn gradient(&self, stencil: usize, q: &SVector<f64, 21>) -> (f64, SVector<f64, 21>) {
         let corners = self.corners(stencil, q);
-        let (value, moments, _) = self.response(stencil, &corners);
+        let (value, moments, _) = self.response(stencil, &curvatures_of(&corners));
         let mut gradient = SVector::<f64, 21>::zeros();
         for (c, corner) in corners.iter().enumerate() {
             let [g, g1, _] = corner.profile;
@@ -452,5 +465,28 @@ impl<P: AngleProfile, S: Section> LocalEnergy<21, 9> for MidEdgeBending<P, S> {
 
     fn describe(&self, stencil: usize) -> String {
         format!("face {stencil}")
+    }
+
+    fn at_held_positions<'a>(
+        &'a self,
+        unknowns: &(dyn Fn(usize) -> SVector<f64, 21> + Sync),
+        layout: &DofLayout,
+    ) -> Option<Box<dyn Energy + 'a>> {
+        let edges = parallel_map(self.stencils.len(), |stencil| {
+            let mut q = unknowns(stencil);
+            q.fixed_rows_mut::<3>(18).fill(0.0);
+            std::array::from_fn(|c| {
+                let (half_turn, wing, _) = self.tilt(stencil, c, &q);
+                HeldEdge {
+                    twice_height: 2.0 * wing.height,
+                    half_turn,
+                    sign: self.stencils[stencil].signs[c],
+                }
+            })
+        });
+        Some(Box::new(Assembled::new(
+            HeldMidEdge::new(self, edges),
+            layout,
+        )))
     }
 }
