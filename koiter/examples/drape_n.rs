@@ -43,6 +43,7 @@ fn main() {
         name: "ball".into(),
         shape: ObstacleShape::Mesh(icosphere(0.3, 3).expect("a ball")),
         friction: 0.4,
+        deformation: None,
         motion: Motion::default(),
     };
     let model = Model {

@@ -38,6 +38,7 @@ fn obstacle(name: &str, shape: ObstacleShape) -> Obstacle {
         name: name.into(),
         shape,
         friction: 0.4,
+        deformation: None,
         motion: Motion::default(),
     }
 }

@@ -247,6 +247,7 @@ fn a_plate_dropped_flat_gains_nothing_from_the_bounce() {
                 normal: Vec3::z(),
             },
             friction: 0.0,
+            deformation: None,
             motion: Motion::default(),
         }];
         let mut simulation = Simulation::new(model).unwrap();
@@ -295,6 +296,7 @@ fn draped(threads: usize) -> Vec<Vec3> {
             name: "ball".into(),
             shape: ObstacleShape::Mesh(icosphere(0.25, 2).unwrap()),
             friction: 0.3,
+            deformation: None,
             motion: Motion::default(),
         }];
         let mut simulation = Simulation::new(model).unwrap();

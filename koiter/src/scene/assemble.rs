@@ -189,7 +189,7 @@ impl Unknowns {
             .obstacles
             .iter()
             .map(|o| {
-                let points = obstacle_points(o);
+                let points = o.start_points();
                 (layout.push_nodes(points.len(), 3, false), points)
             })
             .collect();
@@ -223,11 +223,7 @@ impl Unknowns {
             write_points(&mut velocities, *first, &shell.velocities);
         }
         for (obstacle, (first, points)) in model.obstacles.iter().zip(&self.obstacles) {
-            let moved: Vec<Vec3> = points
-                .iter()
-                .map(|x| obstacle.motion.apply(*x, 0.0))
-                .collect();
-            write_points(&mut q, *first, &moved);
+            write_points(&mut q, *first, &obstacle.points_at(points, 0.0));
         }
         (q, velocities)
     }
@@ -259,16 +255,6 @@ fn vertex_masses(parts: &[ShellPart], masses: &[f64]) -> Vec<(Dof, f64)> {
         .flat_map(|p| p.vertex_dofs().step_by(3))
         .map(|start| (Dof(start as u32), masses[start]))
         .collect()
-}
-
-/// The points whose motion is that of an obstacle.
-fn obstacle_points(obstacle: &Obstacle) -> Vec<Vec3> {
-    match &obstacle.shape {
-        ObstacleShape::Plane { point, .. } => vec![*point],
-        ObstacleShape::Sphere { center, .. } => vec![*center],
-        ObstacleShape::Capsule { ends, .. } => ends.to_vec(),
-        ObstacleShape::Mesh(surface) => surface.positions.clone(),
-    }
 }
 
 fn build_contact(

@@ -9,7 +9,7 @@ use super::document::Document;
 use super::error::{SceneError, SceneErrorKind as Kind, Warning};
 use super::memory;
 use super::model::{
-    Constraint, ContactOptions, Model, Obstacle, ObstacleShape, Shell, SolverOptions,
+    Constraint, ContactOptions, Model, Obstacle, ObstacleShape, Schedule, Shell, SolverOptions,
 };
 use super::placement::{MeshSource, ShapeError, move_point, move_to, place, turn};
 use super::probe::{Probe, ProbeTarget, mean};
@@ -194,18 +194,33 @@ impl Builder<'_> {
         surface: &Surface,
     ) -> Result<Vec<Vec3>, SceneError> {
         let rest = self.mesh(path, mesh)?;
-        if rest.mesh.faces() != surface.mesh.faces() {
-            let message = format!(
-                "the rest mesh must have the triangles of the start mesh, in the same order: it has {} vertices and {} \
-                 triangles, the start mesh {} and {}",
-                rest.positions.len(),
-                rest.mesh.num_faces(),
-                surface.positions.len(),
-                surface.mesh.num_faces()
-            );
-            return Err(SceneError::new(Kind::Mesh, message).inside(path));
-        }
+        check_same_triangles(path, ["rest", "start"], &rest, surface)?;
         Ok(rest.positions)
+    }
+
+    /// Where the vertices of an obstacle of this shape are over time, if it deforms.
+    fn deformation(
+        &self,
+        obstacle: &ObstacleSpec,
+        shape: &ObstacleShape,
+    ) -> Result<Option<Schedule<Vec<Vec3>>>, SceneError> {
+        let (ObstacleShape::Mesh(start), false) = (shape, obstacle.deform.is_empty()) else {
+            return Ok(None);
+        };
+        let (mut times, mut values) = (vec![0.0], vec![start.positions.clone()]);
+        for (number, deform) in obstacle.deform.iter().enumerate() {
+            let path = format!("obstacle.{}.deform.{number}.mesh", obstacle.name);
+            let mut surface = self.mesh(&path, &deform.mesh)?;
+            let (path, name) = match &deform.mesh.file {
+                Some(file) => (format!("{path}.file"), format!("'{file}'")),
+                None => (path, "this".to_owned()),
+            };
+            check_same_triangles(&path, [&name, "obstacle's"], &surface, start)?;
+            move_to(&mut surface, obstacle.rotate.as_ref(), obstacle.translate);
+            times.push(deform.time);
+            values.push(surface.positions);
+        }
+        Ok(Some(Schedule { times, values }))
     }
 
     fn mesh(&self, path: &str, spec: &MeshSpec) -> Result<Surface, SceneError> {
@@ -214,9 +229,11 @@ impl Builder<'_> {
     }
 
     fn obstacle(&self, obstacle: &ObstacleSpec) -> Result<Obstacle, SceneError> {
+        let shape = self.obstacle_shape(obstacle)?;
         Ok(Obstacle {
             name: obstacle.name.clone(),
-            shape: self.obstacle_shape(obstacle)?,
+            deformation: self.deformation(obstacle, &shape)?,
+            shape,
             friction: obstacle.friction,
             motion: obstacle.motion.to_motion(),
         })
@@ -345,6 +362,27 @@ impl Builder<'_> {
             axis: probe.axis,
         })
     }
+}
+
+/// Refuses a mesh that is not a shape of the triangles of another; both with their names.
+fn check_same_triangles(
+    path: &str,
+    [name, of_name]: [&str; 2],
+    mesh: &Surface,
+    of: &Surface,
+) -> Result<(), SceneError> {
+    if mesh.mesh.faces() == of.mesh.faces() {
+        return Ok(());
+    }
+    let message = format!(
+        "the {name} mesh must have the triangles of the {of_name} mesh, in the same order: it has {} vertices and {} \
+         triangles, the {of_name} mesh {} and {}",
+        mesh.positions.len(),
+        mesh.mesh.num_faces(),
+        of.positions.len(),
+        of.mesh.num_faces()
+    );
+    Err(SceneError::new(Kind::Mesh, message).inside(path))
 }
 
 fn mesh_error(error: ShapeError, path: &str) -> SceneError {

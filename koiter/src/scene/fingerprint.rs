@@ -58,6 +58,9 @@ impl Model {
             if let ObstacleShape::Mesh(surface) = &obstacle.shape {
                 hash.add_surface(surface);
             }
+            for points in obstacle.deformation.iter().flat_map(|d| &d.values) {
+                hash.add_points(points);
+            }
             (obstacle.name.clone(), hash.0)
         });
         shells.chain(obstacles).collect()

@@ -19,6 +19,7 @@ mod material_models;
 pub mod measure;
 pub mod model;
 mod modes;
+mod obstacles;
 mod position_bending;
 pub mod schedule;
 mod simulation;

@@ -119,6 +119,8 @@ pub struct Obstacle {
     pub shape: ObstacleShape,
     /// Friction coefficient of the surface.
     pub friction: f64,
+    /// Of a mesh: where its vertices are over time, before the motion; `None`: where they are in `shape`.
+    pub deformation: Option<Schedule<Vec<Vec3>>>,
     /// Motion relative to time 0.
     pub motion: Motion,
 }

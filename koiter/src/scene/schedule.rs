@@ -5,6 +5,26 @@ use nalgebra::{Rotation3, Unit};
 
 pub use super::model::{Motion, Rotation, Scaling, Schedule};
 
+impl<T> Schedule<T> {
+    /// The keys around the time `t` [s] and the fraction of the way from the first to the second.
+    ///
+    /// # Panics
+    /// If there are no keys, or not as many values as times.
+    fn keys_around(&self, t: f64) -> (usize, usize, f64) {
+        assert!(
+            !self.times.is_empty() && self.times.len() == self.values.len(),
+            "a schedule has a value for each of at least one time"
+        );
+        let next = self.times.partition_point(|&time| time <= t);
+        if next == 0 || next == self.times.len() {
+            let last = next.saturating_sub(1);
+            return (last, last, 0.0);
+        }
+        let (start, end) = (self.times[next - 1], self.times[next]);
+        (next - 1, next, (t - start) / (end - start))
+    }
+}
+
 impl<T> Schedule<T>
 where
     T: Copy
@@ -17,20 +37,23 @@ where
     /// # Panics
     /// If there are no keys, or not as many values as times.
     pub fn at(&self, t: f64) -> T {
-        assert!(
-            !self.times.is_empty() && self.times.len() == self.values.len(),
-            "a schedule has a value for each of at least one time"
-        );
-        let next = self.times.partition_point(|&time| time <= t);
-        if next == 0 {
-            return self.values[0];
-        }
-        if next == self.times.len() {
-            return self.values[next - 1];
-        }
-        let (start, end) = (self.times[next - 1], self.times[next]);
-        let (from, to) = (self.values[next - 1], self.values[next]);
-        from + (to - from) * ((t - start) / (end - start))
+        let (before, after, fraction) = self.keys_around(t);
+        let (from, to) = (self.values[before], self.values[after]);
+        from + (to - from) * fraction
+    }
+}
+
+impl Schedule<Vec<Vec3>> {
+    /// All points at time `t` [s].
+    ///
+    /// # Panics
+    /// If there are no keys, or not as many values as times.
+    pub fn points_at(&self, t: f64) -> Vec<Vec3> {
+        let (before, after, fraction) = self.keys_around(t);
+        let points = self.values[before].iter().zip(&self.values[after]);
+        points
+            .map(|(from, to)| from + (to - from) * fraction)
+            .collect()
     }
 }
 
@@ -181,7 +204,7 @@ mod typed {
         /// Translation [m] over time.
         #[serde(default)]
         pub translate: Option<Schedule<[f64; 3]>>,
-        /// Rotation over time.
+        /// Rotation over time. Points of meshes move along chords between the ends of a step.
         #[serde(default)]
         pub rotate: Option<TurnSpec>,
         /// Scaling over time.

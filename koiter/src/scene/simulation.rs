@@ -1,7 +1,7 @@
 //! A running simulation.
 
 use super::arc_length;
-use super::assemble::{Assembly, BuildError, assemble};
+use super::assemble::{Assembly, BuildError, assemble, write_points};
 use super::display::{PartTopology, tessellate};
 use super::holds::Holds;
 use super::loads::set_factors;
@@ -196,11 +196,7 @@ impl Simulation {
             target[dof] = value;
         }
         for (obstacle, (first, points)) in self.model.obstacles.iter().zip(&self.obstacles) {
-            for (i, x) in points.iter().enumerate() {
-                let start = first.0 as usize + 3 * i;
-                target[start..start + 3]
-                    .copy_from_slice(obstacle.motion.apply(*x, time).as_slice());
-            }
+            write_points(target, *first, &obstacle.points_at(points, time));
         }
         prescribed
     }
@@ -332,11 +328,7 @@ impl Simulation {
             .iter()
             .zip(&self.parts[self.model.shells.len()..]);
         for (obstacle, part) in obstacles {
-            positions.extend(
-                part.start_positions
-                    .iter()
-                    .map(|x| obstacle.motion.apply(*x, self.state.time)),
-            );
+            positions.extend(obstacle.points_at(&part.start_positions, self.state.time));
         }
         positions
     }

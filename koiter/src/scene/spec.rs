@@ -22,6 +22,7 @@ mod check;
 mod constraint;
 mod load;
 mod material;
+mod obstacle;
 mod shape;
 mod strain_limit;
 mod symmetry;
@@ -30,6 +31,7 @@ pub use check::MAX_STEPS;
 pub use constraint::{BoundsSpec, ConstraintSpec, SelectSpec};
 pub use load::{EdgeChoice, LoadSpec};
 pub use material::{LayerSpec, MaterialSpec};
+pub use obstacle::{DeformSpec, ObstacleSpec};
 pub use shape::{
     BoxSpec, CapsuleSpec, CylinderBodySpec, MeshSpec, PlaneSpec, RotationSpec, SphereSpec, Units,
     UpAxis,
@@ -49,7 +51,7 @@ use super::decode::decode;
 use super::document::Document;
 use super::error::SceneError;
 use super::model::{BendingModel, IntegratorKind};
-use super::schedule::{MotionSpec, Schedule};
+use super::schedule::Schedule;
 
 /// A scene as it was typed.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -184,44 +186,6 @@ pub enum RestSpec {
     Flat,
     /// The shell wants to be curved like its rest mesh.
     Mesh,
-}
-
-/// `[[obstacle]]`: exactly one shape.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ObstacleSpec {
-    /// Name, unique in the scene.
-    pub name: String,
-    /// Half-space.
-    #[serde(default)]
-    pub plane: Option<PlaneSpec>,
-    /// Exact ball.
-    #[serde(default)]
-    pub sphere: Option<SphereSpec>,
-    /// Exact cylinder with round ends.
-    #[serde(default)]
-    pub capsule: Option<CapsuleSpec>,
-    /// Box.
-    #[serde(default, rename = "box")]
-    pub cuboid: Option<BoxSpec>,
-    /// Cylinder with flat ends, along z.
-    #[serde(default)]
-    pub cylinder: Option<CylinderBodySpec>,
-    /// Any mesh.
-    #[serde(default)]
-    pub mesh: Option<MeshSpec>,
-    /// Turned by this first.
-    #[serde(default)]
-    pub rotate: Option<RotationSpec>,
-    /// Then moved by this [m].
-    #[serde(default)]
-    pub translate: [f64; 3],
-    /// Friction coefficient.
-    #[serde(default = "default_friction")]
-    pub friction: f64,
-    /// Motion over time.
-    #[serde(default)]
-    pub motion: MotionSpec,
 }
 
 /// `[contact]`.

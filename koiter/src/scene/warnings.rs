@@ -2,7 +2,7 @@
 
 use super::error::Warning;
 use super::free_parts::FreePart;
-use super::model::{BendingModel, Model, Shell};
+use super::model::{BendingModel, Model, Motion, ObstacleShape, Shell};
 use super::spec::{MeshSpec, SceneSpec, Units};
 
 /// Softer than any gel, harder than diamond.
@@ -17,6 +17,8 @@ const LARGE_FOR_A_FILE: f64 = 5.0;
 const LARGE_BY_THICKNESS: f64 = 5e3;
 /// A shell smaller than this [m] is probably in a larger unit.
 const SMALL: f64 = 1e-4;
+/// A turn by more than this in a step [°] brings points 3 % nearer to the axis on the way.
+const LARGE_TURN: f64 = 30.0;
 /// More than on any planet [m/s²].
 const LARGE_GRAVITY: f64 = 1e4;
 /// The theory of thin shells and the contact stencils want triangles much larger than the thickness.
@@ -41,6 +43,17 @@ pub(super) fn find(model: &Model, spec: &SceneSpec) -> Vec<Warning> {
         warnings.extend(check_thickness(shell, &path));
         warnings.extend(check_bending(shell, &path));
     }
+    for (obstacle, typed) in model.obstacles.iter().zip(&spec.obstacle) {
+        let path = format!("obstacle.{}", typed.name);
+        // A ball or the axis of a capsule keeps its shape.
+        if matches!(obstacle.shape, ObstacleShape::Mesh(_)) {
+            warnings.extend(check_turning(&obstacle.motion, &path, spec.time.dt));
+        }
+    }
+    for (index, constraint) in model.constraints.iter().enumerate() {
+        let path = spec.constraint[index].path(index);
+        warnings.extend(check_turning(&constraint.motion, &path, spec.time.dt));
+    }
     if model.gravity.norm() > LARGE_GRAVITY {
         let message = format!("a gravity of {:.2e} m/s² is unusual", model.gravity.norm());
         let help = "on Earth it is 9.81 m/s²";
@@ -50,6 +63,28 @@ pub(super) fn find(model: &Model, spec: &SceneSpec) -> Vec<Warning> {
         warnings.extend(model.free_parts().iter().map(free_part));
     }
     warnings
+}
+
+/// What turns far in one step is smaller on the way: points move along chords.
+fn check_turning(motion: &Motion, path: &str, dt: f64) -> Option<Warning> {
+    let angle = &motion.rotation.as_ref()?.angle;
+    let turns = angle.times.windows(2).zip(angle.values.windows(2));
+    let by_step = turns.map(|(times, angles)| {
+        let duration = times[1] - times[0];
+        (angles[1] - angles[0]).abs() * (dt / duration).min(1.0)
+    });
+    let largest = by_step.fold(0.0, f64::max);
+    if largest <= LARGE_TURN.to_radians() {
+        return None;
+    }
+    let message = format!(
+        "it turns by up to {:.0}° in a step of {dt} s: on the way, points move along chords, up to {:.0} % nearer to the axis",
+        largest.to_degrees(),
+        100.0 * (1.0 - (0.5 * largest).cos().max(0.0))
+    );
+    let help = "take a smaller time.dt, or a longer time for the turn";
+    let path = format!("{path}.motion.rotate.degrees");
+    Some(warning(message, path, help))
 }
 
 fn check_young(shell: &Shell, path: &str) -> Option<Warning> {

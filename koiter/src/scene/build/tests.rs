@@ -179,6 +179,13 @@ fn mistakes_that_only_meshes_show_point_at_their_line() {
             (8, "rest_mesh"),
             "30 vertices",
         ),
+        (
+            "box = { size = [1, 1, 0.1] }",
+            "mesh.grid = { size = [1, 1], cells = [2, 2] }\ndeform = [{ time = 1, mesh.file = \"large.obj\" }]",
+            "obstacle.lid.deform.0.mesh.file",
+            (16, "\"large.obj\""),
+            "'large.obj' mesh must have the triangles of the obstacle's",
+        ),
     ];
     for (from, to, path, place, words) in cases {
         assert!(SCENE.contains(from), "{from}");

@@ -14,6 +14,7 @@ mesh.grid = { size = [1.0, 1.0], cells = [2, 2] }
 [[obstacle]]
 name = "floor"
 plane = {}
+deform = [{ time = 1.0, mesh = {} }]
 [[constraint]]
 name = "pin"
 shell = "sheet"

@@ -1,19 +1,22 @@
 //! Checks that need no mesh: ranges, names, and keys that must stand alone.
 
 mod loads;
+mod motion;
+mod obstacle;
 
 use std::collections::HashSet;
 
+use self::motion::{check_motion, check_schedule};
+use self::obstacle::check_obstacle;
 use super::material::check_material;
 use super::strain_limit::check_strain_limit;
 use super::{
-    ConstraintSpec, ENERGY_NAMES, FIELD_NAMES, MeshSpec, ObstacleSpec, ProbeQuantity, ProbeSpec,
-    RestSpec, RotationSpec, SceneSpec, SelectSpec, ShellSpec, SymmetrySpec,
+    ConstraintSpec, ENERGY_NAMES, FIELD_NAMES, MeshSpec, ProbeQuantity, ProbeSpec, RestSpec,
+    RotationSpec, SceneSpec, SelectSpec, ShellSpec, SymmetrySpec,
 };
 use crate::scene::document::suggest;
 use crate::scene::error::{SceneError, SceneErrorKind as Kind};
 use crate::scene::model::IntegratorKind;
-use crate::scene::schedule::{MotionSpec, Schedule};
 
 pub(super) type Checked = Result<(), SceneError>;
 
@@ -143,99 +146,6 @@ fn check_direction(path: &str, direction: [f64; 3]) -> Checked {
             path,
             "a direction must not be [0, 0, 0]".into(),
         ));
-    }
-    Ok(())
-}
-
-fn check_obstacle(path: &str, obstacle: &ObstacleSpec) -> Checked {
-    let at = |key: &str| format!("{path}.{key}");
-    let shapes = [
-        ("plane", obstacle.plane.is_some()),
-        ("sphere", obstacle.sphere.is_some()),
-        ("capsule", obstacle.capsule.is_some()),
-        ("box", obstacle.cuboid.is_some()),
-        ("cylinder", obstacle.cylinder.is_some()),
-        ("mesh", obstacle.mesh.is_some()),
-    ];
-    let given: Vec<&str> = shapes
-        .into_iter()
-        .filter_map(|(name, given)| given.then_some(name))
-        .collect();
-    exactly_one(path, &given, "plane, sphere, capsule, box, cylinder, mesh")?;
-    if let Some(plane) = &obstacle.plane {
-        check_direction(&at("plane.normal"), plane.normal)?;
-    }
-    optional_positive(
-        &at("sphere.radius"),
-        obstacle.sphere.as_ref().map(|s| s.radius),
-        "m",
-    )?;
-    if let Some(capsule) = &obstacle.capsule {
-        positive(&at("capsule.radius"), capsule.radius, "m")?;
-        if capsule.ends[0] == capsule.ends[1] {
-            let message = "the two ends are the same point".to_owned();
-            return Err(
-                error(Kind::OutOfRange, &at("capsule.ends"), message).with_help("use a sphere")
-            );
-        }
-    }
-    if let Some(mesh) = &obstacle.mesh {
-        check_mesh(&at("mesh"), mesh)?;
-    }
-    if let Some(rotate) = &obstacle.rotate {
-        check_rotation(&at("rotate"), rotate)?;
-    }
-    not_negative(&at("friction"), obstacle.friction, "")?;
-    check_motion(&at("motion"), &obstacle.motion)?;
-    let shape = given[0];
-    if obstacle.motion.scale.is_some() && ["plane", "sphere", "capsule"].contains(&shape) {
-        let message = format!("a {shape} cannot be scaled");
-        return Err(error(Kind::Conflict, &at("motion.scale"), message)
-            .with_help("use a mesh, such as mesh.icosphere"));
-    }
-    Ok(())
-}
-
-fn check_motion(path: &str, motion: &MotionSpec) -> Checked {
-    if let Some(translate) = &motion.translate {
-        check_schedule(&format!("{path}.translate"), translate)?;
-    }
-    if let Some(rotate) = &motion.rotate {
-        check_direction(&format!("{path}.rotate.axis"), rotate.axis)?;
-        check_schedule(&format!("{path}.rotate.degrees"), &rotate.degrees)?;
-    }
-    if let Some(scale) = &motion.scale {
-        let at = |key: &str| format!("{path}.scale.{key}");
-        if let Some(along) = scale.along {
-            check_direction(&at("along"), along)?;
-        }
-        check_schedule(&at("factor"), &scale.factor)?;
-        for (key, factor) in scale.factor.values.iter().enumerate() {
-            positive(&at(&format!("factor.{key}.1")), *factor, "")?;
-        }
-    }
-    Ok(())
-}
-
-fn check_schedule<T>(path: &str, schedule: &Schedule<T>) -> Checked {
-    if schedule.times.is_empty() {
-        return Err(
-            error(Kind::OutOfRange, path, "the schedule has no keys".into())
-                .with_help("write pairs [time, value], such as [[0.0, 0.0], [1.0, 1.0]]"),
-        );
-    }
-    for (key, pair) in schedule.times.windows(2).enumerate() {
-        if pair[1] <= pair[0] {
-            let message = format!(
-                "the times of a schedule must increase, but {} s is followed by {} s",
-                pair[0], pair[1]
-            );
-            return Err(error(
-                Kind::OutOfRange,
-                &format!("{path}.{}", key + 1),
-                message,
-            ));
-        }
     }
     Ok(())
 }
