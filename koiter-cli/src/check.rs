@@ -3,8 +3,8 @@
 mod result;
 
 use crate::output::say;
-use koiter::scene::model::{Load, Model, Shell};
-use koiter::scene::{LoadTotal, readable_bytes};
+use koiter::scene::model::{IntegratorKind, Load, Model, Shell};
+use koiter::scene::{LoadTotal, Scene, readable_bytes};
 use serde::Serialize;
 
 use crate::arguments::{CheckArguments, SceneArguments};
@@ -23,13 +23,25 @@ struct Report {
     estimated_memory_bytes: u64,
     energies: Vec<&'static str>,
     steps: usize,
+    /// Of the first step.
     dt: f64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    phases: Vec<PhaseReport>,
     shells: Vec<ShellReport>,
     obstacles: Vec<String>,
     constraints: usize,
     loads: Vec<LoadReport>,
     probes: Vec<String>,
     warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct PhaseReport {
+    name: String,
+    integrator: IntegratorKind,
+    start: f64,
+    steps: usize,
+    dt: f64,
 }
 
 #[derive(Serialize)]
@@ -121,6 +133,7 @@ fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(),
     let loads = loads.map(|load| LoadReport::new(&scene.model, load));
     let loads = loads.collect();
     let stats = start(&scene.model, arguments.debug_mesh.as_deref())?.stats();
+    let phases = phases(&scene);
     let report = Report {
         title: scene.title,
         vertices: stats.vertices,
@@ -129,8 +142,9 @@ fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(),
         hessian_nonzeros: stats.hessian_nonzeros,
         estimated_memory_bytes: stats.estimated_memory_bytes as u64,
         energies: stats.energies,
-        steps: scene.num_steps,
-        dt: scene.dt,
+        steps: scene.timeline.num_steps(),
+        dt: scene.timeline.dt(1),
+        phases,
         shells,
         obstacles,
         constraints,
@@ -148,6 +162,20 @@ fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(),
         report.print();
     }
     Ok(())
+}
+
+/// The phases of a scene that names some.
+fn phases(scene: &Scene) -> Vec<PhaseReport> {
+    let phases = scene.model.phases.iter().zip(scene.timeline.phases());
+    phases
+        .map(|(phase, steps)| PhaseReport {
+            name: phase.name.clone(),
+            integrator: phase.integrator,
+            start: steps.start,
+            steps: steps.steps,
+            dt: steps.dt,
+        })
+        .collect()
 }
 
 /// Of a shell at its start shape [kg].
@@ -202,7 +230,20 @@ impl Report {
             self.hessian_nonzeros,
             readable_bytes(self.estimated_memory_bytes as f64)
         );
-        say!("{} steps of {} s", self.steps, self.dt);
+        for phase in &self.phases {
+            let PhaseReport {
+                name,
+                start,
+                steps,
+                dt,
+                ..
+            } = phase;
+            say!("phase {name}: from {start} s, {steps} steps of {dt} s");
+        }
+        match self.phases.is_empty() {
+            true => say!("{} steps of {} s", self.steps, self.dt),
+            false => say!("{} steps", self.steps),
+        }
         say!("the scene is sound");
     }
 }

@@ -25,7 +25,6 @@ use crate::pictures;
 use crate::scene_source::load;
 use beginning::Beginning;
 use progress::Progress;
-use record::decimal_time;
 use recorder::Recorder;
 
 /// Runs a scene.
@@ -148,13 +147,15 @@ fn use_threads(threads: usize) -> Result<(), Failure> {
 
 fn num_steps(scene: &Scene, until: Option<f64>) -> Result<usize, Failure> {
     match until {
-        None => Ok(scene.num_steps),
-        Some(until) if until / scene.dt > MAX_STEPS => Err(Failure::input(format!(
-            "--until {until} s would take more than {MAX_STEPS:e} steps of {} s",
-            scene.dt
-        ))),
+        None => Ok(scene.timeline.num_steps()),
+        Some(until) if scene.timeline.steps_until(until) > MAX_STEPS => {
+            Err(Failure::input(format!(
+                "--until {until} s would take more than {MAX_STEPS:e} steps of {} s",
+                scene.timeline.dt(usize::MAX)
+            )))
+        }
         Some(until) if until.is_finite() && until > 0.0 => {
-            Ok(((until / scene.dt - 1e-9).ceil() as usize).max(1))
+            Ok(scene.timeline.steps_until(until) as usize)
         }
         Some(until) => Err(Failure::input(format!(
             "--until must be a time larger than 0 s, but it is {until}"
@@ -174,9 +175,10 @@ fn advance(
         if simulation.has_ended() {
             break;
         }
-        let report = match simulation.step(recorder.scene.dt) {
+        let timeline = &recorder.scene.timeline;
+        let report = match simulation.step(timeline.dt(step)) {
             Ok(report) => StepReport {
-                time: decimal_time(report.step, recorder.scene.dt),
+                time: timeline.time(step),
                 ..report
             },
             Err(error) => {

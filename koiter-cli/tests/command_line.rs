@@ -302,3 +302,53 @@ fn steps_that_do_not_converge_are_warned_about_once_and_counted() {
     let stats = std::fs::read_to_string(folder.path().join("out/stats.jsonl")).unwrap();
     assert_eq!(stats.matches("\"diagnosis\"").count(), 5);
 }
+
+#[test]
+fn phases_of_a_run_go_on_in_one_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let phases = "phase = [{ name = \"rest\", integrator = \"quasi-static\", gravity = [0, 0, 0], end = 0.2, dt = 0.1 },\n\
+                  { name = \"fall\", end = 0.23, dt = 0.01, every_steps = 2 }]\n\
+                  constraint = [{ shell = \"cloth\", select.boundary = 0, until = 0.2 }]";
+    let text = SCENE.replace("time = { end = 0.1, dt = 0.02 }", phases);
+    let scene = write_scene(folder.path(), &text);
+    let out = folder.path().join("out").to_string_lossy().into_owned();
+    let run = |more: &[&str]| {
+        let output = koiter(&[&["run", &scene, "--out", &out, "--no-film"], more].concat());
+        assert_eq!(status(&output), 0, "{}", stderr(&output));
+    };
+    let read = |name: &str| std::fs::read_to_string(folder.path().join("out").join(name)).unwrap();
+    let times = || -> Vec<f64> {
+        let lines = read("stats.jsonl");
+        let lines = lines
+            .lines()
+            .map(|line| serde_json::from_str(line).unwrap());
+        lines
+            .map(|line: Value| line["time"].as_f64().unwrap())
+            .collect()
+    };
+    run(&["--until", "0.21"]);
+    assert_eq!(times(), [0.1, 0.2, 0.21]);
+    run(&["--resume"]);
+    assert_eq!(times(), [0.1, 0.2, 0.21, 0.22, 0.23]);
+    // The start, both steps of the first phase, every second of the other, and the end.
+    let reader = koiter::io::result::ResultReader::open(&folder.path().join("out")).unwrap();
+    let frames: Vec<f64> = (0..reader.len())
+        .map(|k| reader.frame(k).unwrap().time)
+        .collect();
+    assert_eq!(frames, [0.0, 0.1, 0.2, 0.22, 0.23]);
+    assert!(
+        read("probes.csv")
+            .lines()
+            .last()
+            .unwrap()
+            .starts_with("0.23,")
+    );
+    let check = koiter(&["check", &scene, "--json"]);
+    let report: Value = serde_json::from_str(&stdout(&check)).unwrap();
+    assert_eq!(report["steps"], 5);
+    assert_eq!(report["phases"][1]["steps"], 3);
+    assert_eq!(report["phases"][0]["integrator"], "quasi-static");
+    assert!(
+        stdout(&koiter(&["check", &scene])).contains("phase fall: from 0.2 s, 3 steps of 0.01 s")
+    );
+}

@@ -24,11 +24,11 @@ fn mean_heights_are_those_of_two_other_programs() {
     )
     .unwrap();
     let scene = Scene::build(&file, &NoFiles).unwrap();
-    assert_eq!(scene.num_steps, 40);
+    assert_eq!(scene.timeline.num_steps(), 40);
     let mut simulation = Simulation::new(scene.model).unwrap();
     let mut compared = 0;
     for step in 1..=40 {
-        let report = simulation.step(scene.dt).unwrap();
+        let report = simulation.step(scene.timeline.dt(1)).unwrap();
         assert!(report.converged && report.min_gap > 0.0, "step {step}");
         let x = simulation.shell_positions(0);
         let mean = x.iter().map(|p| p.z).sum::<f64>() / x.len() as f64;

@@ -81,7 +81,7 @@ impl Run {
             memory: None,
         })?
         .scene;
-        let dt = scene.dt;
+        let dt = scene.timeline.dt(1);
         let mut simulation = Simulation::new(scene.model).map_err(Failure::input)?;
         let mut run = Self {
             faces: simulation.stats().faces,

@@ -9,7 +9,7 @@ use koiter::io::result::{Checkpoint, Field, FolderLock, Frame, ResultError, Resu
 use koiter::scene::{Scene, Simulation};
 
 use super::beginning::BEGIN_AGAIN;
-use super::record::{StatsLine, Summary, decimal_time};
+use super::record::{StatsLine, Summary};
 use super::start;
 use crate::failure::Failure;
 use crate::probes::ProbeWriter;
@@ -63,15 +63,17 @@ impl<'a> Recorder<'a> {
         let scene = &loaded.scene;
         let step = simulation.step_count();
         // The frame of an end that is no longer the end is not one of the regular ones: it goes too.
-        let frames = 1 + step / scene.frame_steps;
+        let frames = scene.timeline.num_frames(step);
         let writer = ResultWriter::resume_locked(lock, &manifest, frames, step).map_err(damaged)?;
         let probes = ProbeWriter::resume(writer.folder(), &scene.probes, 1 + step, &totals.probes)
             .map_err(damaged)?;
         let mut recorder = Self::new(loaded, simulation, num_steps, writer, probes);
         recorder.seconds_before = totals.seconds;
         recorder.unconverged = totals.unconverged as usize;
-        recorder.summary.take_up(step, scene.dt, totals);
-        if step == num_steps && !step.is_multiple_of(scene.frame_steps) {
+        recorder
+            .summary
+            .take_up(step, scene.timeline.time(step), totals);
+        if step == num_steps && !scene.timeline.has_frame(step) {
             recorder.write_frame(simulation)?;
         }
         Ok(recorder)
@@ -110,7 +112,7 @@ impl<'a> Recorder<'a> {
             .append_stats(&StatsLine::new(report))
             .map_err(writing)?;
         self.write_probes(simulation)?;
-        if is_last || report.step.is_multiple_of(self.scene.frame_steps) {
+        if is_last || self.scene.timeline.has_frame(report.step) {
             self.write_frame(simulation)?;
         }
         self.summary.add(report);
@@ -169,7 +171,7 @@ impl<'a> Recorder<'a> {
             .filter(|(name, _)| wanted(name));
         let frame = Frame {
             step: simulation.step_count() as u64,
-            time: decimal_time(simulation.step_count(), self.scene.dt),
+            time: self.scene.timeline.time(simulation.step_count()),
             positions: simulation.display_positions(),
             vertex_fields: Vec::new(),
             face_fields: fields
@@ -183,7 +185,7 @@ impl<'a> Recorder<'a> {
     }
 
     fn write_probes(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        let time = decimal_time(simulation.step_count(), self.scene.dt);
+        let time = self.scene.timeline.time(simulation.step_count());
         self.probes
             .write(simulation, time)
             .map_err(|error| cannot_write(&self.writer.folder().join("probes.csv"), error))

@@ -211,8 +211,10 @@ type Rows = Vec<Vec<(String, f64)>>;
 
 fn run(scene: &Scene, simulation: &mut Simulation) -> Result<Rows, Failure> {
     let mut rows = Vec::new();
-    for step in 1..=scene.num_steps {
-        let report = simulation.step(scene.dt).map_err(Failure::run)?;
+    for step in 1..=scene.timeline.num_steps() {
+        let report = simulation
+            .step(scene.timeline.dt(step))
+            .map_err(Failure::run)?;
         if !report.converged {
             let reason = report.diagnosis.unwrap_or_default();
             return Err(Failure::run(format!(

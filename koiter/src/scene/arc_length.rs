@@ -16,6 +16,9 @@ pub enum ArcLengthError {
         "arc length follows equilibria without contact, but contact is on: set contact.enabled = false"
     )]
     Contact,
+    /// There are phases.
+    #[error("a path by arc length is a run of its own: it has no phases")]
+    Phases,
     /// Nothing depends on the load factor.
     #[error(
         "arc length has no load to follow: give a load, or gravity_scale, a schedule such as [[0, 0], [1, 1]]"
@@ -51,6 +54,9 @@ const LARGEST_BY_FIRST: f64 = 10.0;
 
 /// What the load factor multiplies.
 pub(super) fn load_pattern(model: &Model) -> Result<LoadPattern, ArcLengthError> {
+    if !model.phases.is_empty() {
+        return Err(ArcLengthError::Phases);
+    }
     if model.contact.enabled {
         return Err(ArcLengthError::Contact);
     }

@@ -5,7 +5,7 @@ use super::clamps::Clamps;
 use super::composition::CompositionError;
 use super::elastic::{Elastic, rest_surface};
 use super::loads::loads;
-use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
+use super::model::{Model, Obstacle, ObstacleShape, Shell};
 use super::symmetry::symmetry_edges;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout};
@@ -130,7 +130,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     let loads = loads(model, &parts, &unknowns.layout, &q)?;
     let gravity = Gravity {
         masses: vertex_masses(&parts, &masses),
-        acceleration: model.gravity,
+        acceleration: model.all_phases()[0].gravity,
     };
     check_contact_reach(model)?;
     check_planes(model)?;
@@ -152,7 +152,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         gravity,
         loads,
         masses,
-        is_dynamic: model.integrator == IntegratorKind::ImplicitEuler,
+        is_dynamic: model.all_phases()[0].integrator.is_dynamic(),
         contact,
         friction_speed: model.contact.friction_speed,
         space: OffsetSurfaces { shells: parts },

@@ -3,6 +3,7 @@
 mod arc_length;
 mod composition;
 mod loads;
+mod phases;
 mod symmetry;
 
 use super::document::Document;
@@ -11,6 +12,7 @@ use super::memory;
 use super::model::{
     Constraint, ContactOptions, Model, Obstacle, ObstacleShape, Schedule, Shell, SolverOptions,
 };
+use super::phases::Timeline;
 use super::placement::{MeshSource, ShapeError, move_point, move_to, place, turn};
 use super::probe::{Probe, ProbeTarget, mean};
 use super::selection::{SelectionError, select};
@@ -30,16 +32,12 @@ pub struct Scene {
     pub title: String,
     /// What is simulated.
     pub model: Model,
-    /// Step [s].
-    pub dt: f64,
-    /// Number of steps to the end.
-    pub num_steps: usize,
+    /// How far to run it, in which steps.
+    pub timeline: Timeline,
     /// What to measure.
     pub probes: Vec<Probe>,
     /// What to write.
     pub output: OutputSpec,
-    /// A frame every so many steps.
-    pub frame_steps: usize,
     /// What is implausible.
     pub warnings: Vec<Warning>,
 }
@@ -74,20 +72,12 @@ impl Scene {
         arc_length::check_arc_length(&model, &file.spec).map_err(place)?;
         let probes = builder.probes(&model).map_err(place)?;
         let spec = &file.spec;
-        let frame_steps = match (spec.output.every_steps, spec.output.every_seconds) {
-            (Some(steps), _) => steps,
-            (None, Some(seconds)) => ((seconds / spec.time.dt).round() as usize).max(1),
-            (None, None) => 1,
-        };
         let warnings = located(warnings::find(&model, spec), &file.document);
         Ok(Self {
             title: spec.title.clone(),
-            dt: spec.time.dt,
-            // An end that is a whole number of steps up to rounding takes exactly these.
-            num_steps: ((spec.time.end / spec.time.dt - 1e-9).ceil() as usize).max(1),
+            timeline: phases::timeline(spec),
             probes,
             output: spec.output.clone(),
-            frame_steps,
             warnings,
             model,
         })
@@ -156,6 +146,7 @@ impl Builder<'_> {
                 last_load_factor: (spec.solver.last_load_factor).unwrap_or(solver.last_load_factor),
             },
             integrator: spec.integrator,
+            phases: phases::phases(spec),
         })
     }
 
@@ -327,8 +318,7 @@ impl Builder<'_> {
             ProbeQuantity::Reaction => {
                 let name = probe.constraint.as_deref().unwrap_or_default();
                 let mut constraints = self.spec.constraint.iter().enumerate();
-                let index =
-                    constraints.position(|(i, c)| c.path(i) == format!("constraint.{name}"));
+                let index = constraints.position(|(i, c)| c.id(i) == name);
                 ProbeTarget::Reaction(index.ok_or_else(|| {
                     let message = format!("there is no constraint '{name}'");
                     SceneError::new(Kind::UnknownName, message).inside(&path("constraint"))

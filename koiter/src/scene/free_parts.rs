@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::model::{IntegratorKind, Model};
+use super::model::{Model, Phase};
 use crate::mesh::VertexId;
 
 /// A connected part of a shell that can be moved along an axis without being deformed.
@@ -30,21 +30,23 @@ impl fmt::Display for FreePart {
 }
 
 impl Model {
-    /// The parts of shells that are free to move, if the scene is static; contact may hold them all the same.
+    /// The parts of shells that are free to move in the first static phase; contact may hold them all the same.
     pub fn free_parts(&self) -> Vec<FreePart> {
-        if self.integrator == IntegratorKind::ImplicitEuler {
+        let phases = self.all_phases();
+        let Some(phase) = phases.iter().find(|phase| !phase.integrator.is_dynamic()) else {
             return Vec::new();
-        }
+        };
         (0..self.shells.len())
-            .flat_map(|shell| self.free_parts_of(shell))
+            .flat_map(|shell| self.free_parts_of(shell, phase))
             .collect()
     }
 
-    fn free_parts_of(&self, shell: usize) -> Vec<FreePart> {
+    fn free_parts_of(&self, shell: usize, phase: &Phase) -> Vec<FreePart> {
         let mesh = &self.shells[shell].surface.mesh;
         let (count, part_of_vertex) = mesh.components();
         let mut axes = vec![[true; 3]; count];
-        for constraint in self.constraints.iter().filter(|c| c.shell == shell) {
+        let constraints = self.constraints.iter().zip(&phase.constraints);
+        for (constraint, _) in constraints.filter(|(c, holds)| c.shell == shell && **holds) {
             for vertex in &constraint.vertices {
                 let part = part_of_vertex[vertex.0 as usize] as usize;
                 for (free, held) in axes[part].iter_mut().zip(constraint.axes) {

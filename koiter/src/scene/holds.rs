@@ -1,7 +1,7 @@
 //! What constraints hold: which unknowns in a step, and where they are to be at its end.
 
 use super::clamps::Clamps;
-use super::model::Model;
+use super::model::{Model, Phase};
 use super::schedule::MotionPart;
 use crate::Vec3;
 use crate::assembly::Dof;
@@ -44,11 +44,10 @@ impl Holds {
                 positions: held.map(|v| positions[v.0 as usize]).collect(),
             }
         });
-        let is_acting = model.constraints.iter().map(|c| c.from <= 0.0);
         Self {
             clamps,
             starts: starts.collect(),
-            is_acting: is_acting.collect(),
+            is_acting: acting_at_start(model, &model.all_phases()[0]),
             anchors: Vec::new(),
         }
     }
@@ -67,13 +66,12 @@ impl Holds {
     pub(super) fn switch(
         &mut self,
         model: &Model,
+        phase: &Phase,
         parts: &[ShellPart],
         q: &[f64],
         [since, until]: [f64; 2],
     ) {
-        let due: Vec<bool> = (model.constraints.iter())
-            .map(|constraint| constraint.is_due(until))
-            .collect();
+        let due = acting_at(model, phase, until);
         let begins = |&i: &usize| due[i] && !self.is_acting[i];
         let constraints: Vec<usize> = (0..due.len()).filter(begins).collect();
         for anchor in &mut self.anchors {
@@ -98,17 +96,16 @@ impl Holds {
     pub(super) fn restore(
         &mut self,
         model: &Model,
+        phase: &Phase,
         parts: &[ShellPart],
         time: f64,
         anchors: &[Anchor],
     ) {
         self.anchors.clear();
-        for (is_acting, constraint) in self.is_acting.iter_mut().zip(&model.constraints) {
-            *is_acting = match time > 0.0 {
-                true => constraint.is_due(time),
-                false => constraint.from <= 0.0,
-            };
-        }
+        self.is_acting = match time > 0.0 {
+            true => acting_at(model, phase, time),
+            false => acting_at_start(model, phase),
+        };
         for anchor in anchors {
             self.begin(model, parts, anchor.clone());
         }
@@ -186,4 +183,20 @@ impl Holds {
             });
         }
     }
+}
+
+/// Which constraints act in a step that ends at a time [s].
+fn acting_at(model: &Model, phase: &Phase, time: f64) -> Vec<bool> {
+    let constraints = model.constraints.iter().zip(&phase.constraints);
+    constraints
+        .map(|(constraint, holds)| *holds && constraint.is_due(time))
+        .collect()
+}
+
+/// Which constraints hold the start shape.
+fn acting_at_start(model: &Model, phase: &Phase) -> Vec<bool> {
+    let constraints = model.constraints.iter().zip(&phase.constraints);
+    constraints
+        .map(|(constraint, holds)| *holds && constraint.from <= 0.0)
+        .collect()
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::assemble::BuildError;
 use super::elastic::rest_surface;
-use super::model::{self, LoadKind, Model};
+use super::model::{self, LoadKind, Model, Phase};
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout};
 use crate::energy::bending::ExtraUnknowns;
@@ -30,14 +30,19 @@ pub(super) fn loads(
         loads: made.collect::<Result<_, _>>()?,
     };
     loads.restore_turned(&vec![0.0; loads.turned().len()], q);
-    set_factors(model, 0.0, &mut loads);
+    set_factors(model, &model.all_phases()[0], 0.0, &mut loads);
     Ok(loads)
 }
 
-/// Sets all factors to those of a time [s].
-pub(super) fn set_factors(model: &Model, time: f64, loads: &mut Loads) {
-    for (spec, load) in model.loads.iter().zip(&mut loads.loads) {
-        load.set_factor(spec.scale.as_ref().map_or(1.0, |scale| scale.at(time)));
+/// Sets all factors to those of a time [s] in a phase.
+pub(super) fn set_factors(model: &Model, phase: &Phase, time: f64, loads: &mut Loads) {
+    let acting = model.loads.iter().zip(&phase.loads);
+    for ((spec, acts), load) in acting.zip(&mut loads.loads) {
+        load.set_factor(match (acts, &spec.scale) {
+            (false, _) => 0.0,
+            (true, Some(scale)) => scale.at(time),
+            (true, None) => 1.0,
+        });
     }
 }
 

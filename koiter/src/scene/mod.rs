@@ -20,6 +20,7 @@ pub mod measure;
 pub mod model;
 mod modes;
 mod obstacles;
+mod phases;
 mod position_bending;
 pub mod schedule;
 mod simulation;
@@ -65,6 +66,7 @@ pub use self::{
     holds::Anchor,
     loads::LoadTotal,
     material_models::MaterialModelInfo,
+    phases::{PhaseSteps, Timeline},
     simulation::{Simulation, SystemStats},
     snapshot::{RestoreError, Snapshot},
 };

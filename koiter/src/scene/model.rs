@@ -347,6 +347,33 @@ pub enum IntegratorKind {
     ArcLength,
 }
 
+impl IntegratorKind {
+    /// Whether there is motion, with inertia and kinetic energy; else every step ends at rest.
+    pub fn is_dynamic(self) -> bool {
+        match self {
+            Self::ImplicitEuler => true,
+            Self::QuasiStatic | Self::LinearStatic | Self::ArcLength => false,
+        }
+    }
+}
+
+/// A part of a run with its own way to advance. Motion ends with a static phase: one that follows begins at rest.
+#[derive(Clone, Debug)]
+pub struct Phase {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Number of steps; the last phase goes on for as long as steps are taken.
+    pub steps: usize,
+    /// How the state advances.
+    pub integrator: IntegratorKind,
+    /// Gravitational acceleration [m/s²].
+    pub gravity: Vec3,
+    /// Which constraints hold, within their time windows; one that held not before holds things where they are then.
+    pub constraints: Vec<bool>,
+    /// Which loads act.
+    pub loads: Vec<bool>,
+}
+
 /// Everything a [`super::Simulation`] is made of; by default nothing, without gravity.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
@@ -370,4 +397,7 @@ pub struct Model {
     pub solver: SolverOptions,
     /// Integrator.
     pub integrator: IntegratorKind,
+    /// What follows one another in a run; by default one phase with the integrator and the gravity of the model, in
+    /// which all constraints and loads act.
+    pub phases: Vec<Phase>,
 }

@@ -5,7 +5,8 @@ use super::assemble::{Assembly, BuildError, assemble, write_points};
 use super::display::{PartTopology, tessellate};
 use super::holds::Holds;
 use super::loads::set_factors;
-use super::model::{IntegratorKind, Model};
+use super::model::{IntegratorKind, Model, Phase};
+use super::phases::phase_of_step;
 use super::symmetry::held_by;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, Energy};
@@ -20,7 +21,11 @@ pub struct Simulation {
     pub(super) model: Model,
     pub(super) system: System,
     pub(super) state: State,
-    integrator: Box<dyn Integrator>,
+    pub(super) phases: Vec<Phase>,
+    /// One a phase.
+    integrators: Vec<Box<dyn Integrator>>,
+    /// The phase of the last step, or of the step under way.
+    phase: usize,
     obstacles: Vec<(Dof, Vec<Vec3>)>,
     pub(super) holds: Holds,
     parts: Vec<PartTopology>,
@@ -78,19 +83,13 @@ impl Simulation {
             obstacles,
             clamps,
         } = assemble(&model)?;
-        let integrator: Box<dyn Integrator> = match model.integrator {
-            IntegratorKind::ImplicitEuler => Box::new(ImplicitEuler {
-                velocity_tolerance: model.solver.velocity_tolerance,
-            }),
-            IntegratorKind::QuasiStatic => Box::new(QuasiStatic {
-                displacement_tolerance: model.solver.displacement_tolerance,
-            }),
-            IntegratorKind::LinearStatic => Box::new(LinearStatic),
-            IntegratorKind::ArcLength => Box::new(arc_length::integrator(&model)?),
-        };
-        let load_pattern = match model.integrator {
-            IntegratorKind::ArcLength => Some(arc_length::load_pattern(&model)?),
-            _ => None,
+        let phases = model.all_phases();
+        let integrators = (phases.iter())
+            .map(|phase| integrator(&model, phase.integrator))
+            .collect::<Result<_, _>>()?;
+        let load_pattern = match model.follows_path() {
+            true => Some(arc_length::load_pattern(&model)?),
+            false => None,
         };
         let parts = tessellate(&model);
         let holds = Holds::new(&model, clamps);
@@ -106,7 +105,9 @@ impl Simulation {
             model,
             system,
             state,
-            integrator,
+            phases,
+            integrators,
+            phase: 0,
             obstacles,
             holds,
             parts,
@@ -129,7 +130,8 @@ impl Simulation {
     }
 
     fn step_in_pool(&mut self, dt: f64) -> Result<StepReport, StepError> {
-        match self.model.integrator {
+        self.enter_phase(self.state.step + 1);
+        match self.phase().integrator {
             IntegratorKind::QuasiStatic => self.step_in_parts(dt),
             IntegratorKind::ImplicitEuler
             | IntegratorKind::LinearStatic
@@ -137,34 +139,42 @@ impl Simulation {
         }
     }
 
+    /// The phase that a step with this number, from 1, belongs to is that of the coming or last step.
+    pub(super) fn enter_phase(&mut self, step: usize) {
+        self.phase = phase_of_step(&self.phases, step);
+        self.system.is_dynamic = self.phase().integrator.is_dynamic();
+    }
+
+    pub(super) fn phase(&self) -> &Phase {
+        &self.phases[self.phase]
+    }
+
     /// One step of the integrator, to the time `time` [s], `dt` [s] from now.
     pub(super) fn step_to(&mut self, time: f64, dt: f64) -> Result<StepReport, StepError> {
         let parts = &self.system.space.shells;
         let window = [self.state.time, time];
-        self.holds.switch(&self.model, parts, &self.state.q, window);
+        let phase = &self.phases[self.phase];
+        (self.holds).switch(&self.model, phase, parts, &self.state.q, window);
         self.apply_schedules(time);
         let prescribed = self.prescribed_at(time);
         let before = self.state.velocities.clone();
-        let result = (self.integrator).step(&mut self.system, &mut self.state, &prescribed, dt);
+        let integrator = &mut self.integrators[self.phase];
+        let result = integrator.step(&mut self.system, &mut self.state, &prescribed, dt);
         if result.is_err() {
             self.apply_schedules(self.state.time);
         }
         let report = result?;
-        if self.model.integrator == IntegratorKind::ImplicitEuler {
-            let changes = self
-                .state
-                .velocities
-                .iter()
-                .zip(&before)
-                .map(|(new, old)| (new - old) / dt);
-            self.momentum_rates = self
-                .system
-                .masses
-                .iter()
-                .zip(changes)
-                .map(|(m, a)| m * a)
-                .collect();
-        }
+        self.momentum_rates = match self.system.is_dynamic {
+            true => {
+                let changes = self.state.velocities.iter().zip(&before);
+                let masses = self.system.masses.iter();
+                masses
+                    .zip(changes)
+                    .map(|(m, (new, old))| m * ((new - old) / dt))
+                    .collect()
+            }
+            false => vec![0.0; self.system.masses.len()],
+        };
         Ok(report)
     }
 
@@ -174,10 +184,11 @@ impl Simulation {
             pattern.apply(self.load_factor().unwrap_or(0.0), &mut self.system);
             return;
         }
-        if let Some(scale) = &self.model.gravity_scale {
-            self.system.gravity.acceleration = self.model.gravity * scale.at(time);
-        }
-        set_factors(&self.model, time, &mut self.system.loads);
+        let phase = &self.phases[self.phase];
+        let scale = self.model.gravity_scale.as_ref();
+        self.system.gravity.acceleration =
+            phase.gravity * scale.map_or(1.0, |scale| scale.at(time));
+        set_factors(&self.model, phase, time, &mut self.system.loads);
         self.holds
             .move_clamps(&self.model, time, self.system.clamps.local_mut());
     }
@@ -392,4 +403,17 @@ impl Simulation {
             energies,
         }
     }
+}
+
+fn integrator(model: &Model, kind: IntegratorKind) -> Result<Box<dyn Integrator>, BuildError> {
+    Ok(match kind {
+        IntegratorKind::ImplicitEuler => Box::new(ImplicitEuler {
+            velocity_tolerance: model.solver.velocity_tolerance,
+        }),
+        IntegratorKind::QuasiStatic => Box::new(QuasiStatic {
+            displacement_tolerance: model.solver.displacement_tolerance,
+        }),
+        IntegratorKind::LinearStatic => Box::new(LinearStatic),
+        IntegratorKind::ArcLength => Box::new(arc_length::integrator(model)?),
+    })
 }

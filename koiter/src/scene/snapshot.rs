@@ -61,9 +61,10 @@ impl Simulation {
         self.momentum_rates = snapshot.momentum_rates.clone();
         self.share = snapshot.share;
         (self.system.loads).restore_turned(&snapshot.turned, &self.state.q);
-        let parts = &self.system.space.shells;
+        self.enter_phase(self.state.step.max(1));
+        let (phase, parts) = (self.phase().clone(), &self.system.space.shells);
         let (model, time) = (&self.model, self.state.time);
-        self.holds.restore(model, parts, time, &snapshot.anchors);
+        (self.holds).restore(model, &phase, parts, time, &snapshot.anchors);
         self.apply_schedules(time);
         if let (Some(contact), Some(kappa)) = (&mut self.system.contact, snapshot.kappa) {
             contact.set_kappa(kappa);

@@ -23,6 +23,7 @@ mod constraint;
 mod load;
 mod material;
 mod obstacle;
+mod phase;
 mod shape;
 mod strain_limit;
 mod symmetry;
@@ -32,6 +33,7 @@ pub use constraint::{BoundsSpec, ConstraintSpec, SelectSpec};
 pub use load::{EdgeChoice, LoadSpec};
 pub use material::{LayerSpec, MaterialSpec};
 pub use obstacle::{DeformSpec, ObstacleSpec};
+pub use phase::PhaseSpec;
 pub use shape::{
     BoxSpec, CapsuleSpec, CylinderBodySpec, MeshSpec, PlaneSpec, RotationSpec, SphereSpec, Units,
     UpAxis,
@@ -63,8 +65,12 @@ pub struct SceneSpec {
     /// More lines.
     #[serde(default)]
     pub description: String,
-    /// How long, in which steps.
-    pub time: TimeSpec,
+    /// How long, in which steps; or else give phases.
+    #[serde(default)]
+    pub time: Option<TimeSpec>,
+    /// Parts of the run, one after the other, each with its own steps.
+    #[serde(default)]
+    pub phase: Vec<PhaseSpec>,
     /// How the state advances.
     #[serde(default)]
     pub integrator: IntegratorKind,

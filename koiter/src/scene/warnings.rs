@@ -47,12 +47,12 @@ pub(super) fn find(model: &Model, spec: &SceneSpec) -> Vec<Warning> {
         let path = format!("obstacle.{}", typed.name);
         // A ball or the axis of a capsule keeps its shape.
         if matches!(obstacle.shape, ObstacleShape::Mesh(_)) {
-            warnings.extend(check_turning(&obstacle.motion, &path, spec.time.dt));
+            warnings.extend(check_turning(&obstacle.motion, &path, spec));
         }
     }
     for (index, constraint) in model.constraints.iter().enumerate() {
         let path = spec.constraint[index].path(index);
-        warnings.extend(check_turning(&constraint.motion, &path, spec.time.dt));
+        warnings.extend(check_turning(&constraint.motion, &path, spec));
     }
     if model.gravity.norm() > LARGE_GRAVITY {
         let message = format!("a gravity of {:.2e} m/s² is unusual", model.gravity.norm());
@@ -66,23 +66,25 @@ pub(super) fn find(model: &Model, spec: &SceneSpec) -> Vec<Warning> {
 }
 
 /// What turns far in one step is smaller on the way: points move along chords.
-fn check_turning(motion: &Motion, path: &str, dt: f64) -> Option<Warning> {
+fn check_turning(motion: &Motion, path: &str, spec: &SceneSpec) -> Option<Warning> {
     let angle = &motion.rotation.as_ref()?.angle;
-    let turns = angle.times.windows(2).zip(angle.values.windows(2));
-    let by_step = turns.map(|(times, angles)| {
-        let duration = times[1] - times[0];
-        (angles[1] - angles[0]).abs() * (dt / duration).min(1.0)
-    });
-    let largest = by_step.fold(0.0, f64::max);
+    let mut largest = 0.0f64;
+    for (times, angles) in angle.times.windows(2).zip(angle.values.windows(2)) {
+        let rate = (angles[1] - angles[0]).abs() / (times[1] - times[0]);
+        for [start, end, dt] in spec.windows() {
+            let common = times[1].min(end) - times[0].max(start);
+            largest = largest.max(rate * common.min(dt));
+        }
+    }
     if largest <= LARGE_TURN.to_radians() {
         return None;
     }
     let message = format!(
-        "it turns by up to {:.0}° in a step of {dt} s: on the way, points move along chords, up to {:.0} % nearer to the axis",
+        "it turns by up to {:.0}° in a step: on the way, points move along chords, up to {:.0} % nearer to the axis",
         largest.to_degrees(),
         100.0 * (1.0 - (0.5 * largest).cos().max(0.0))
     );
-    let help = "take a smaller time.dt, or a longer time for the turn";
+    let help = "take smaller steps (dt), or a longer time for the turn";
     let path = format!("{path}.motion.rotate.degrees");
     Some(warning(message, path, help))
 }

@@ -80,7 +80,10 @@ fn build(text: &str) -> Result<Scene, SceneError> {
 fn a_scene_becomes_a_model() {
     let scene = build(SCENE).unwrap();
     let shell = &scene.model.shells[0];
-    assert_eq!((scene.num_steps, scene.frame_steps), (10, 3));
+    let [steps] = scene.timeline.phases() else {
+        panic!("{:?}", scene.timeline)
+    };
+    assert_eq!((steps.steps, steps.frame_steps), (10, 3));
     assert_eq!((shell.youngs_modulus, shell.thickness), (1e6, 1e-3));
     assert!(shell.surface.positions.iter().all(|x| x.z == 1.0));
     assert_eq!(shell.rest_positions, shell.surface.positions);
@@ -115,7 +118,11 @@ fn an_end_of_whole_steps_takes_exactly_these() {
         (0.01, 0.02, 1),
     ] {
         let text = SCENE.replace("end = 1.0, dt = 0.1", &format!("end = {end}, dt = {dt}"));
-        assert_eq!(build(&text).unwrap().num_steps, steps, "{end} / {dt}");
+        assert_eq!(
+            build(&text).unwrap().timeline.num_steps(),
+            steps,
+            "{end} / {dt}"
+        );
     }
 }
 
@@ -449,4 +456,14 @@ fn materials_and_rest_forms_that_cannot_be_are_refused_at_their_key() {
         ))
         .is_ok()
     );
+}
+
+#[test]
+fn a_path_by_arc_length_is_no_phase() {
+    let text = "contact.enabled = false\n[[shell]]\nname = \"a\"\nmaterial = \"cotton\"\n\
+                mesh.grid = { size = [1.0, 1.0], cells = [2, 2] }\n\
+                [[phase]]\nname = \"path\"\nend = 1\ndt = 1\nintegrator = \"arc-length\"\n";
+    let error = build(text).unwrap_err();
+    assert_eq!((error.kind, error.path.as_str()), (Kind::Conflict, "phase"));
+    assert!(error.message.contains("no phases"), "{}", error.message);
 }

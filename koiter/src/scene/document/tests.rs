@@ -38,7 +38,7 @@ fn overrides_set_values_by_dotted_path() {
     ])
     .unwrap()
     .spec;
-    assert_eq!(spec.time.dt, 0.5);
+    assert_eq!(spec.time.unwrap().dt, 0.5);
     assert_eq!(spec.shell[0].material.young, Some(2e6));
     assert_eq!(spec.shell[0].material.preset.as_deref(), Some("cotton"));
     assert_eq!(
@@ -77,7 +77,10 @@ fn variants_are_picked_by_name_and_other_overrides_win() {
         cells(&["shell.cloth.mesh.grid.cells=[7,7]", "resolution=fine"]),
         [7, 7]
     );
-    assert_eq!(parse(&["resolution=fine"]).unwrap().spec.time.dt, 0.01);
+    assert_eq!(
+        parse(&["resolution=fine"]).unwrap().spec.time.unwrap().dt,
+        0.01
+    );
 }
 
 #[test]

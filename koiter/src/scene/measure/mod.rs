@@ -183,6 +183,7 @@ impl Measurement<'_> {
             },
             solver: SolverOptions::default(),
             integrator: IntegratorKind::QuasiStatic,
+            phases: Vec::new(),
         }
     }
 }

@@ -7,6 +7,10 @@ use crate::scene::{SceneErrorKind, SceneFile};
 /// One of each list, so that a path leads to every table.
 const SCENE: &str = r#"
 time = { end = 1.0, dt = 0.1 }
+[[phase]]
+name = "all"
+end = 1.0
+dt = 0.1
 [[shell]]
 name = "sheet"
 material = { preset = "cotton", layers = [{ thickness = 1e-3, young = 1e6 }] }

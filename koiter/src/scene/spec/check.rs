@@ -3,11 +3,13 @@
 mod loads;
 mod motion;
 mod obstacle;
+mod phases;
 
 use std::collections::HashSet;
 
 use self::motion::{check_motion, check_schedule};
 use self::obstacle::check_obstacle;
+pub use self::phases::MAX_STEPS;
 use super::material::check_material;
 use super::strain_limit::check_strain_limit;
 use super::{
@@ -20,22 +22,9 @@ use crate::scene::model::IntegratorKind;
 
 pub(super) type Checked = Result<(), SceneError>;
 
-/// More steps than this are a slip in `dt` or in the end.
-pub const MAX_STEPS: f64 = 1e8;
-
 /// Checks a whole scene; the first mistake is returned with its path.
 pub(super) fn check(spec: &SceneSpec) -> Checked {
-    positive("time.dt", spec.time.dt, "s")?;
-    positive("time.end", spec.time.end, "s")?;
-    if spec.time.end / spec.time.dt > MAX_STEPS {
-        let steps = spec.time.end / spec.time.dt;
-        return Err(error(
-            Kind::OutOfRange,
-            "time.dt",
-            format!("these are {steps:.1e} time steps"),
-        )
-        .with_help("make dt larger or end smaller"));
-    }
+    phases::check_phases(spec)?;
     if spec.shell.is_empty() {
         return Err(error(
             Kind::MissingKey,
@@ -95,10 +84,12 @@ pub(super) fn check(spec: &SceneSpec) -> Checked {
 impl ConstraintSpec {
     /// Dotted path of the constraint with this number.
     pub(in crate::scene) fn path(&self, index: usize) -> String {
-        match &self.name {
-            Some(name) => format!("constraint.{name}"),
-            None => format!("constraint.{index}"),
-        }
+        format!("constraint.{}", self.id(index))
+    }
+
+    /// What others call the constraint with this number: its name, or the number.
+    pub(in crate::scene) fn id(&self, index: usize) -> String {
+        self.name.clone().unwrap_or_else(|| index.to_string())
     }
 }
 
@@ -288,26 +279,21 @@ fn check_probe(path: &str, probe: &ProbeSpec, spec: &SceneSpec) -> Checked {
     if let Some(select) = &probe.select {
         check_select(&at("select"), select)?;
     }
-    if let Some(name) = &probe.constraint {
-        let names: Vec<String> = (0..spec.constraint.len())
-            .map(|i| {
-                spec.constraint[i]
-                    .path(i)
-                    .trim_start_matches("constraint.")
-                    .to_owned()
-            })
-            .collect();
-        if !names.contains(name) {
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            return Err(error(
-                Kind::UnknownName,
-                &at("constraint"),
-                format!("there is no constraint '{name}'"),
-            )
-            .with_help(suggest(name, &names)));
-        }
+    match &probe.constraint {
+        Some(name) => check_constraint_name(&at("constraint"), name, spec),
+        None => Ok(()),
     }
-    Ok(())
+}
+
+fn check_constraint_name(path: &str, name: &str, spec: &SceneSpec) -> Checked {
+    let names = (0..spec.constraint.len()).map(|i| spec.constraint[i].id(i));
+    let names: Vec<String> = names.collect();
+    if names.iter().any(|known| known == name) {
+        return Ok(());
+    }
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let message = format!("there is no constraint '{name}'");
+    Err(error(Kind::UnknownName, path, message).with_help(suggest(name, &names)))
 }
 
 fn check_contact_and_solver(spec: &SceneSpec) -> Checked {

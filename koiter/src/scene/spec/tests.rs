@@ -475,6 +475,85 @@ fn shapes_of_an_obstacle_come_one_after_the_other() {
 }
 
 #[test]
+fn phases_are_checked_with_the_names_they_use() {
+    let time = "time = { end = 1.0, dt = 0.02 }";
+    let wrong = |keys: &str| {
+        let phases = format!("phase = [{{ name = \"a\", end = 1, dt = 0.1 }}, {{ {keys} }}]");
+        mistake(time, &phases)
+    };
+    let cases = [
+        (
+            "name = \"b\", end = 1, dt = 0.1",
+            Kind::OutOfRange,
+            "phase.b.end",
+            "1",
+            "the one before ends at 1 s",
+        ),
+        (
+            "name = \"b\", end = 2, dt = 0",
+            Kind::OutOfRange,
+            "phase.b.dt",
+            "0",
+            "larger than 0",
+        ),
+        (
+            "name = \"b\", end = 2, dt = 1e-12",
+            Kind::OutOfRange,
+            "phase.b.dt",
+            "1e-12",
+            "1.0e12 time steps",
+        ),
+        (
+            "name = \"b\", end = 2, dt = 1, loads = [\"wind\"]",
+            Kind::UnknownName,
+            "phase.b.loads.0",
+            "\"wind\"",
+            "no load 'wind'",
+        ),
+        (
+            "name = \"b\", end = 2, dt = 1, constraints = [\"1\"]",
+            Kind::UnknownName,
+            "phase.b.constraints.0",
+            "\"1\"",
+            "no constraint '1'",
+        ),
+        (
+            "name = \"b\", end = 2, dt = 1, every_steps = 0",
+            Kind::OutOfRange,
+            "phase.b.every_steps",
+            "0",
+            "at least 1",
+        ),
+        (
+            "name = \"b\", end = 2, dt = 1, integrator = \"quasistatic\"",
+            Kind::UnknownName,
+            "phase.b.integrator",
+            "\"quasistatic\"",
+            "quasi-static",
+        ),
+    ];
+    for (keys, kind, path, text, words) in cases {
+        assert_mistake(&wrong(keys), kind, path, (2, text), &[words]);
+    }
+    let twice = wrong("name = \"a\", end = 2, dt = 1");
+    assert!(twice.message.contains("'a'"), "{}", twice.message);
+    let both = mistake(
+        time,
+        &format!("{time}\nphase = [{{ name = \"a\", end = 1, dt = 0.1 }}]"),
+    );
+    assert_mistake(
+        &both,
+        Kind::Conflict,
+        "time",
+        (2, "{ end = 1.0, dt = 0.02 }"),
+        &["each phase has its own"],
+    );
+    let neither = mistake(time, "");
+    assert_eq!(neither.kind, Kind::MissingKey);
+    assert!(neither.message.contains("'time'"), "{}", neither.message);
+}
+
+#[test]
 fn unknown_names_come_with_the_nearest_valid_one() {
     let cases = [
         (
@@ -632,7 +711,7 @@ fn a_scene_without_shells_is_refused() {
 #[test]
 fn a_scene_made_by_a_program_has_paths_but_no_places() {
     let mut spec = parse(SCENE).unwrap().spec;
-    spec.time.dt = f64::NAN;
+    spec.time.as_mut().unwrap().dt = f64::NAN;
     let error = SceneFile::from_spec(spec).unwrap_err();
     assert_eq!((error.path.as_str(), error.location), ("time.dt", None));
 }
