@@ -348,6 +348,9 @@ fn phases_of_a_run_go_on_in_one_result() {
     assert_eq!(report["steps"], 5);
     assert_eq!(report["phases"][1]["steps"], 3);
     assert_eq!(report["phases"][0]["integrator"], "quasi-static");
+    let coarse = koiter(&["check", &scene, "--set", "phase.fall.dt=0.02", "--json"]);
+    let report: Value = serde_json::from_str(&stdout(&coarse)).unwrap();
+    assert_eq!(report["phases"][1]["dt"], 0.015);
     assert!(
         stdout(&koiter(&["check", &scene])).contains("phase fall: from 0.2 s, 3 steps of 0.01 s")
     );

@@ -3,6 +3,7 @@
 use super::barrier::LogBarrier;
 use super::candidates::Candidates;
 use super::collision_mesh::CollisionMesh;
+use super::friction_table::FrictionTable;
 use super::pair::{Pair, PairKind, mollify};
 use super::plane::CollisionPlane;
 use super::search::Limiter;
@@ -20,6 +21,7 @@ const LARGEST_STIFFENING: f64 = 1e6;
 pub struct Contact {
     pub(super) mesh: CollisionMesh,
     pub(super) planes: Vec<CollisionPlane>,
+    pub(super) friction: FrictionTable,
     pub(super) layout: DofLayout,
     pub(super) d_hat: f64,
     pub(super) kappa: f64,
@@ -69,6 +71,7 @@ impl Contact {
         kappa: f64,
     ) -> Self {
         Self {
+            friction: FrictionTable::new(&mesh, &planes),
             mesh,
             planes,
             layout,

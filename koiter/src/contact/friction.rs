@@ -92,8 +92,7 @@ impl Friction {
 impl Contact {
     /// Normal forces and tangents at `q`, that of the last refresh, as the friction of the coming step.
     pub fn lag(&self, q: &[f64], friction: &mut Friction) {
-        let coefficient = |a: f64, b: f64| (a * b).sqrt();
-        let of_body = |v: u32| self.mesh.bodies[self.mesh.body[v as usize] as usize].friction;
+        let body = |v: u32| self.mesh.body[v as usize];
         friction.contacts.clear();
         for pair in &self.active {
             let active = self.activate(pair, q);
@@ -102,7 +101,8 @@ impl Contact {
             } else {
                 2
             };
-            let mu = coefficient(of_body(pair.vertices[0]), of_body(pair.vertices[other]));
+            let [a, b] = [0, other].map(|i| body(pair.vertices[i]));
+            let mu = self.friction.of_bodies(a, b);
             let distance = active.closest.distance_squared.sqrt();
             let slope = active.barrier.derivatives(active.closest.distance_squared)[1];
             let m = mollify(&active.positions, active.threshold);
@@ -118,8 +118,8 @@ impl Contact {
         }
         for near in &self.active_planes {
             let plane = &self.planes[near.plane];
-            let limit = coefficient(of_body(near.vertex), plane.friction)
-                * -self.plane_derivatives(near)[0];
+            let mu = self.friction.with_plane(body(near.vertex), near.plane);
+            let limit = mu * -self.plane_derivatives(near)[0];
             if limit > 0.0 {
                 let vertex = self.mesh.vertices[near.vertex as usize];
                 friction.contacts.push(FrictionContact {

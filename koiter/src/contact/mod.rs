@@ -15,6 +15,7 @@ mod ccd;
 mod collision_mesh;
 mod energy;
 mod friction;
+mod friction_table;
 mod pair;
 mod plane;
 mod search;
@@ -29,6 +30,7 @@ pub use ccd::{Approach, additive_ccd};
 pub use collision_mesh::{CollisionBody, CollisionMesh};
 
 pub use friction::Friction;
+pub use friction_table::UnknownBody;
 pub use pair::{Pair, PairKind};
 pub use plane::CollisionPlane;
 pub use start::{StartError, TouchingPair};

@@ -162,6 +162,8 @@ pub struct System {
     pub contact: Option<Contact>,
     /// Speed below which friction is smoothed [m/s].
     pub friction_speed: f64,
+    /// Solves of a step at most, each with the normal forces of the last, until they settle.
+    pub friction_iterations: usize,
     /// Measures steps.
     pub space: OffsetSurfaces,
     /// Pattern, matrix and factor.
@@ -201,6 +203,51 @@ impl System {
             contact.refresh(q);
             contact.lag(q, &mut friction);
         }
+        let options = NewtonOptions {
+            tolerance,
+            max_iterations: self.max_iterations,
+            hessian: HessianChoice::Projected,
+        };
+        let mut inertia = inertia;
+        let mut newton = {
+            let inertia = inertia.as_deref_mut();
+            self.minimize(q, inertia, &mut friction, prescribed, &options)?
+        };
+        for _ in 1..self.friction_iterations {
+            let Some(contact) = self.contact.as_mut().filter(|_| newton.converged) else {
+                break;
+            };
+            contact.refresh(q);
+            contact.lag(q, &mut friction);
+            let left = NewtonOptions {
+                max_iterations: options.max_iterations.saturating_sub(newton.iterations),
+                ..options.clone()
+            };
+            if left.max_iterations == 0 {
+                break;
+            }
+            let inertia = inertia.as_deref_mut();
+            let next = self.minimize(q, inertia, &mut friction, prescribed, &left)?;
+            // The new forces moved nothing by more than the tolerance: they are those that were used.
+            let is_settled = next.converged && next.iterations == 1;
+            newton.go_on(next);
+            if is_settled {
+                break;
+            }
+        }
+        let friction = self.contact.is_some().then(|| friction.value(q));
+        Ok(Solved { newton, friction })
+    }
+
+    /// Minimises the sum of energies with friction as it was lagged.
+    fn minimize(
+        &mut self,
+        q: &mut [f64],
+        inertia: Option<&mut Inertia>,
+        friction: &mut Friction,
+        prescribed: &Prescribed,
+        options: &NewtonOptions,
+    ) -> Result<NewtonReport, SolveError> {
         let mut energies: Vec<&mut dyn Energy> = Vec::new();
         for energy in &mut self.elastic {
             energies.push(energy.as_mut());
@@ -220,7 +267,7 @@ impl System {
         }
         if let Some(contact) = &mut self.contact {
             energies.push(contact);
-            energies.push(&mut friction);
+            energies.push(friction);
         }
         let mut problem = Problem {
             energies,
@@ -229,14 +276,7 @@ impl System {
             is_fixed: &prescribed.is_fixed,
             target: &prescribed.target,
         };
-        let options = NewtonOptions {
-            tolerance,
-            max_iterations: self.max_iterations,
-            hessian: HessianChoice::Projected,
-        };
-        let newton = minimize(&mut problem, &options, &mut self.workspace, q)?;
-        let friction = self.contact.is_some().then(|| friction.value(q));
-        Ok(Solved { newton, friction })
+        minimize(&mut problem, options, &mut self.workspace, q)
     }
 
     /// Energies by name at a state; the kinetic energy only where there is motion, that of clamps where there are some.

@@ -9,7 +9,9 @@ use super::model::{Model, Obstacle, ObstacleShape, Shell};
 use super::symmetry::symmetry_edges;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout};
-use crate::contact::{CollisionBody, CollisionMesh, CollisionPlane, Contact, StartError};
+use crate::contact::{
+    CollisionBody, CollisionMesh, CollisionPlane, Contact, StartError, UnknownBody,
+};
 use crate::energy::Gravity;
 use crate::integrate::{OffsetSurfaces, ShellPart, System};
 use crate::rest::RestError;
@@ -91,6 +93,9 @@ pub enum BuildError {
     /// A model in which no path of loads can be followed.
     #[error(transparent)]
     ArcLength(#[from] ArcLengthError),
+    /// Friction with a body that there is not.
+    #[error(transparent)]
+    Friction(#[from] UnknownBody),
     /// Something touches or intersects at the start.
     #[error(transparent)]
     Start(#[from] StartError),
@@ -142,6 +147,9 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     } = unknowns;
     let mut contact = build_contact(model, &vertices, &obstacles, &layout);
     if let Some(contact) = &mut contact {
+        for pair in &model.contact.pairs {
+            contact.set_friction(&pair.bodies, pair.friction)?;
+        }
         contact.check_start(&q)?;
     }
     let system = System {
@@ -155,6 +163,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         is_dynamic: model.all_phases()[0].integrator.is_dynamic(),
         contact,
         friction_speed: model.contact.friction_speed,
+        friction_iterations: model.contact.friction_iterations,
         space: OffsetSurfaces { shells: parts },
         workspace: LinearWorkspace::default(),
         max_iterations: model.solver.max_iterations,

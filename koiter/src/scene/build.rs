@@ -10,7 +10,8 @@ use super::document::Document;
 use super::error::{SceneError, SceneErrorKind as Kind, Warning};
 use super::memory;
 use super::model::{
-    Constraint, ContactOptions, Model, Obstacle, ObstacleShape, Schedule, Shell, SolverOptions,
+    Constraint, ContactOptions, FrictionPair, Model, Obstacle, ObstacleShape, Schedule, Shell,
+    SolverOptions,
 };
 use super::phases::Timeline;
 use super::placement::{MeshSource, ShapeError, move_point, move_to, place, turn};
@@ -129,6 +130,13 @@ impl Builder<'_> {
                 d_hat: contact.d_hat,
                 kappa: contact.kappa,
                 friction_speed: contact.friction_speed,
+                friction_iterations: contact.friction_iterations,
+                pairs: (contact.pair.iter())
+                    .map(|pair| FrictionPair {
+                        bodies: pair.bodies.clone(),
+                        friction: pair.friction,
+                    })
+                    .collect(),
             },
             solver: SolverOptions {
                 velocity_tolerance: spec

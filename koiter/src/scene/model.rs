@@ -280,6 +280,19 @@ pub struct ContactOptions {
     pub kappa: Option<f64>,
     /// Speed [m/s] below which friction is smoothed.
     pub friction_speed: f64,
+    /// Solves of a step at most, each with the normal forces of the last, until they settle.
+    pub friction_iterations: usize,
+    /// Friction between two bodies, where it is not the geometric mean of their coefficients.
+    pub pairs: Vec<FrictionPair>,
+}
+
+/// Friction between two bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrictionPair {
+    /// Names of two shells, or of a shell and an obstacle; a shell twice: with itself.
+    pub bodies: [String; 2],
+    /// Friction coefficient.
+    pub friction: f64,
 }
 
 impl Default for ContactOptions {
@@ -289,6 +302,8 @@ impl Default for ContactOptions {
             d_hat: None,
             kappa: None,
             friction_speed: 1e-3,
+            friction_iterations: 1,
+            pairs: Vec::new(),
         }
     }
 }

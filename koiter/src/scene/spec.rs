@@ -20,6 +20,7 @@
 
 mod check;
 mod constraint;
+mod contact;
 mod load;
 mod material;
 mod obstacle;
@@ -30,6 +31,7 @@ mod symmetry;
 
 pub use check::MAX_STEPS;
 pub use constraint::{BoundsSpec, ConstraintSpec, SelectSpec};
+pub use contact::{ContactSpec, PairSpec};
 pub use load::{EdgeChoice, LoadSpec};
 pub use material::{LayerSpec, MaterialSpec};
 pub use obstacle::{DeformSpec, ObstacleSpec};
@@ -192,43 +194,6 @@ pub enum RestSpec {
     Flat,
     /// The shell wants to be curved like its rest mesh.
     Mesh,
-}
-
-/// `[contact]`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ContactSpec {
-    /// Whether contact is on.
-    #[serde(default = "yes")]
-    pub enabled: bool,
-    /// Distance [m] at which surfaces begin to repel; default: from the mesh.
-    #[serde(default)]
-    pub d_hat: Option<f64>,
-    /// Barrier stiffness [J/m²]; default: adapted.
-    #[serde(default)]
-    pub kappa: Option<f64>,
-    /// Sliding speed [m/s] below which friction is smoothed.
-    #[serde(default = "friction_speed")]
-    pub friction_speed: f64,
-}
-
-impl Default for ContactSpec {
-    fn default() -> Self {
-        Self {
-            enabled: true,
-            d_hat: None,
-            kappa: None,
-            friction_speed: friction_speed(),
-        }
-    }
-}
-
-fn yes() -> bool {
-    true
-}
-
-fn friction_speed() -> f64 {
-    1e-3
 }
 
 /// `[solver]`; defaults are those of [`super::model::SolverOptions`].

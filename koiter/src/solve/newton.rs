@@ -78,14 +78,14 @@ pub struct NewtonReport {
 }
 
 impl NewtonReport {
-    /// Continues the report of one minimisation with that of the next.
-    fn go_on(&mut self, next: Self) {
+    /// Continues the report of one minimisation with that of the next: efforts add up.
+    pub fn go_on(&mut self, next: Self) {
         let before = std::mem::replace(self, next);
         self.iterations += before.iterations;
         self.line_search_steps += before.line_search_steps;
         self.shifts += before.shifts;
         self.indefinite += before.indefinite;
-        self.saddles += before.saddles + 1;
+        self.saddles += before.saddles;
         for (part, seconds) in before.seconds {
             self.add_seconds(part, seconds);
         }
@@ -148,6 +148,7 @@ pub fn minimize_stably(
         {
             break;
         }
+        report.saddles += 1;
         let remaining = NewtonOptions {
             max_iterations: options.max_iterations.saturating_sub(report.iterations),
             ..options.clone()

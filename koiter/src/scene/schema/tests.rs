@@ -11,6 +11,9 @@ time = { end = 1.0, dt = 0.1 }
 name = "all"
 end = 1.0
 dt = 0.1
+[[contact.pair]]
+bodies = ["sheet", "floor"]
+friction = 0.5
 [[shell]]
 name = "sheet"
 material = { preset = "cotton", layers = [{ thickness = 1e-3, young = 1e6 }] }

@@ -1,5 +1,6 @@
 //! Checks that need no mesh: ranges, names, and keys that must stand alone.
 
+mod friction;
 mod loads;
 mod motion;
 mod obstacle;
@@ -7,6 +8,7 @@ mod phases;
 
 use std::collections::HashSet;
 
+use self::friction::check_friction;
 use self::motion::{check_motion, check_schedule};
 use self::obstacle::check_obstacle;
 pub use self::phases::MAX_STEPS;
@@ -301,6 +303,7 @@ fn check_contact_and_solver(spec: &SceneSpec) -> Checked {
     optional_positive("contact.d_hat", spec.contact.d_hat, "m")?;
     optional_positive("contact.kappa", spec.contact.kappa, "J/m²")?;
     positive("contact.friction_speed", spec.contact.friction_speed, "m/s")?;
+    check_friction(spec)?;
     optional_positive(
         "solver.velocity_tolerance",
         solver.velocity_tolerance,
