@@ -99,14 +99,15 @@ fn a_clamp_that_turns_turns_its_directors() {
 
 #[test]
 fn a_clamp_that_begins_later_turns_by_what_is_left() {
-    let held = "from = 0.5\n";
-    let text = turned("bac", held)
-        + "\n[[constraint]]\nshell = \"strip\"\nselect.box = { max = [-0.2, 1, 1] }\nclamp = true\nuntil = 0.5\n";
-    let tip = positions(&text, 10)[8];
+    let held = "[[constraint]]\nshell = \"strip\"\nselect.box = { max = [-0.2, 1, 1] }\nclamp = true\nuntil = 0.5\n";
     let half = std::f64::consts::FRAC_PI_4;
     let expected = [-0.2 + 0.4 * half.cos(), -0.4 * half.sin()];
-    assert!((tip.x - expected[0]).abs() < 1e-5, "{tip}");
-    assert!((tip.z - expected[1]).abs() < 1e-5, "{tip}");
+    for bending in ["bac", "dkt"] {
+        let text = turned(bending, "from = 0.5\n") + held;
+        let tip = positions(&text, 10)[8];
+        assert!((tip.x - expected[0]).abs() < 1e-5, "{bending}: {tip}");
+        assert!((tip.z - expected[1]).abs() < 1e-5, "{bending}: {tip}");
+    }
 }
 
 #[test]
