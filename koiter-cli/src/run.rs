@@ -1,5 +1,6 @@
 //! `koiter run`: from a scene to a result folder, figures, pictures and a film.
 
+mod account;
 mod beginning;
 mod progress;
 mod record;
@@ -9,7 +10,7 @@ mod start;
 pub(crate) use start::start;
 
 use crate::output::say;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use koiter::integrate::StepReport;
 use koiter::io::result::FolderLock;
@@ -23,6 +24,7 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::pictures;
 use crate::scene_source::load;
+use account::Account;
 use beginning::Beginning;
 use progress::Progress;
 use recorder::Recorder;
@@ -75,7 +77,11 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
     );
     progress.finish();
     let summary_written = recorder.write_summary();
+    let is_told = !arguments.json && !arguments.quiet;
     if let Err(failure) = end.and(summary_written) {
+        if is_told {
+            tell_account(&folder);
+        }
         return Err(match recorder.has_checkpoint() {
             true => failure.with_help(beginning::how_to_go_on()),
             false => failure,
@@ -93,10 +99,20 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if arguments.json {
         let json = serde_json::to_string(&recorder.summary).map_err(Failure::run)?;
         say!("{json}");
-    } else if !arguments.quiet {
-        recorder.summary.print(&folder, &made);
+    } else if is_told {
+        recorder.summary.print();
+        tell_account(&folder);
+        recorder.summary.print_files(&folder, &made);
     }
     judge(&recorder, num_steps)
+}
+
+/// Says where the time went; figures that cannot be read back are no reason to fail.
+fn tell_account(folder: &Path) {
+    match Account::read(folder) {
+        Ok(account) => account.print(),
+        Err(error) => log::warn!(target: "koiter", "{error}"),
+    }
 }
 
 /// Whether the run did what it was asked.
@@ -113,8 +129,9 @@ fn judge(recorder: &Recorder<'_>, num_steps: usize) -> Result<(), Failure> {
             "{} of {} steps did not converge",
             recorder.unconverged, recorder.summary.steps
         );
-        let failure = Failure::run(message)
-            .with_help("stats.jsonl has the diagnosis of each; try a smaller time.dt, or a larger solver.max_iterations");
+        let failure = Failure::run(message).with_help(
+            "the warning above says what to try; stats.jsonl has the diagnosis of each step",
+        );
         return Err(tell_of_free_parts(failure, &recorder.scene.model));
     }
     Ok(())

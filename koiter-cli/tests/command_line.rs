@@ -65,6 +65,74 @@ fn check_prints_one_json_object() {
 }
 
 #[test]
+fn a_run_says_what_limited_it_and_where() {
+    let folder = tempfile::tempdir().unwrap();
+    let near_the_floor = SCENE.replace("[0, 0, 1]", "[0, 0, 0.005]");
+    let scene = write_scene(folder.path(), &near_the_floor);
+    let out = folder.path().join("out").to_string_lossy().into_owned();
+    let output = koiter(&["run", &scene, "--out", &out, "--no-film"]);
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    let text = stdout(&output);
+    for part in [
+        "where the time went: ",
+        "slowest step: ",
+        "smallest gap: ",
+        "of 'cloth' against 'floor'",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let stats = std::fs::read_to_string(Path::new(&out).join("stats.jsonl")).unwrap();
+    let lines: Vec<Value> = stats
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let last = lines.last().unwrap();
+    let contacts = &last["contacts_by_bodies"]["cloth with floor"];
+    assert!(
+        contacts.as_u64().is_some_and(|count| count > 0) && contacts == &last["contacts"],
+        "{last}"
+    );
+    assert!(
+        last["largest_forces"].as_array().unwrap().len() > 1,
+        "{last}"
+    );
+    assert!(
+        last["residual_at"]
+            .as_str()
+            .unwrap()
+            .ends_with("of 'cloth'"),
+        "{last}"
+    );
+    // The step in which the cloth would have gone through the floor.
+    let cut = lines
+        .iter()
+        .find(|line| line["smallest_fraction"].as_f64().unwrap() < 1.0);
+    let limit = &cut.expect("the floor cuts a step short")["limits"][0];
+    assert_eq!(limit["by"], "contact");
+    assert!(limit["at"].as_str().unwrap().contains("'floor'"), "{limit}");
+}
+
+#[test]
+fn a_step_that_does_not_converge_says_what_to_try() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run_small(folder.path(), &["--set", "solver.max_iterations=1"]);
+    assert_eq!(status(&output), 1);
+    let warning = stderr(&output);
+    for part in [
+        "step 1 did not converge",
+        "largest at vertex",
+        "Try ",
+        "solver.max_iterations",
+    ] {
+        assert!(
+            warning.to_lowercase().contains(&part.to_lowercase()),
+            "{part}: {warning}"
+        );
+    }
+    assert!(stdout(&output).contains("where the time went"));
+}
+
+#[test]
 fn a_run_writes_frames_figures_probes_and_a_summary() {
     let folder = tempfile::tempdir().unwrap();
     let output = run_small(folder.path(), &["--json"]);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use indicatif::ProgressBar;
-use koiter::audit::{Audit, Body, FrameAudit, RestFace, Smallest};
+use koiter::audit::{Audit, Body, Crossing, Enclosed, FrameAudit, Penetration, RestFace};
 use koiter::io::result::{Frame, PartKind, ResultReader};
 use serde::Serialize;
 
@@ -202,12 +202,11 @@ impl Row {
     }
 
     fn unreadable(index: usize, error: String) -> Self {
-        let Smallest { value: nothing, .. } = Smallest::default();
         Self {
             frame: index,
-            smallest_area_ratio: nothing,
-            smallest_edge_ratio: nothing,
-            smallest_dihedral_angle: nothing,
+            smallest_area_ratio: f64::INFINITY,
+            smallest_edge_ratio: f64::INFINITY,
+            smallest_dihedral_angle: f64::INFINITY,
             error: Some(error),
             ..Self::default()
         }
@@ -247,11 +246,11 @@ impl Row {
 /// The first findings of each kind, and how many more there are.
 fn findings(audit: &Audit, found: &FrameAudit) -> Vec<String> {
     let name = |body: usize| &audit.bodies()[body].name;
-    let crossing = |hit: &koiter::audit::Crossing| {
+    let crossing = |hit: &Crossing| {
         let (edge, face) = (audit.describe_edge(hit.edge), audit.describe_face(hit.face));
         format!("{edge} crosses {face}")
     };
-    let penetration = |hit: &koiter::audit::Penetration| {
+    let penetration = |hit: &Penetration| {
         let face = audit.describe_face(hit.face);
         format!(
             "{face} reaches {:.2e} m into '{}'",
@@ -259,7 +258,7 @@ fn findings(audit: &Audit, found: &FrameAudit) -> Vec<String> {
             name(hit.body)
         )
     };
-    let enclosed = |hit: &koiter::audit::Enclosed| {
+    let enclosed = |hit: &Enclosed| {
         let vertex = audit.describe_vertex(hit.vertex);
         format!("{vertex} lies inside '{}'", name(hit.body))
     };

@@ -24,7 +24,22 @@ pub(super) struct StatsLine<'a> {
     residual: f64,
     contacts: usize,
     min_gap: f64,
+    /// The pair with the smallest gap.
+    min_gap_at: Option<&'a str>,
     kappa: f64,
+    /// Where the last Newton step was largest.
+    residual_at: &'a str,
+    /// The smallest fraction of a Newton step that a line search left.
+    smallest_fraction: f64,
+    limits: Vec<LimitRecord<'a>>,
+    indefinite_hessians: usize,
+    diagonal_shifts: usize,
+    saddles: usize,
+    /// Why there were so many iterations.
+    reason: String,
+    #[serde(serialize_with = "as_map")]
+    contacts_by_bodies: &'a [(String, usize)],
+    largest_forces: Vec<ForceRecord<'a>>,
     #[serde(serialize_with = "as_map")]
     energies: &'a [(&'static str, f64)],
     #[serde(serialize_with = "as_map")]
@@ -40,9 +55,49 @@ pub(super) struct StatsLine<'a> {
     diagnosis: Option<&'a str>,
 }
 
+/// Line searches that one cause ended.
+#[derive(Serialize)]
+struct LimitRecord<'a> {
+    by: &'static str,
+    count: usize,
+    smallest_fraction: f64,
+    at: &'a str,
+}
+
+/// The element of an energy that pulls most.
+#[derive(Serialize)]
+struct ForceRecord<'a> {
+    energy: &'static str,
+    force: f64,
+    at: &'a str,
+}
+
 impl<'a> StatsLine<'a> {
     pub(super) fn new(report: &'a StepReport) -> Self {
+        let diagnostics = &report.diagnostics;
+        let limits = diagnostics.limits.iter().map(|limit| LimitRecord {
+            by: limit.by,
+            count: limit.count,
+            smallest_fraction: limit.smallest_fraction,
+            at: &limit.place,
+        });
+        let forces = diagnostics.largest_forces.iter();
+        let forces = forces.map(|largest| ForceRecord {
+            energy: largest.energy,
+            force: largest.force,
+            at: &largest.place,
+        });
         Self {
+            min_gap_at: diagnostics.closest.as_deref(),
+            residual_at: &diagnostics.residual_at,
+            smallest_fraction: diagnostics.smallest_fraction(),
+            limits: limits.collect(),
+            indefinite_hessians: diagnostics.indefinite,
+            diagonal_shifts: diagnostics.shifts,
+            saddles: diagnostics.saddles,
+            reason: diagnostics.reason(report.newton_iterations),
+            contacts_by_bodies: &diagnostics.contacts_by_bodies,
+            largest_forces: forces.collect(),
             step: report.step,
             time: report.time,
             dt: report.dt,
@@ -161,8 +216,8 @@ impl Summary {
         self.peak_memory_bytes = memory::peak_bytes();
     }
 
-    /// Prints the summary for people, and the files made.
-    pub(super) fn print(&self, folder: &Path, made: &[PathBuf]) {
+    /// Prints the summary for people.
+    pub(super) fn print(&self) {
         let gap = match self.min_gap.is_finite() {
             true => format!("smallest gap {:.3e} m", self.min_gap),
             false => "nothing came near anything".to_owned(),
@@ -191,6 +246,10 @@ impl Summary {
                 say!("probe {name}: {value}");
             }
         }
+    }
+
+    /// Prints where the result is, and the files made.
+    pub(super) fn print_files(&self, folder: &Path, made: &[PathBuf]) {
         say!("result: {}", folder.display());
         for path in made {
             say!("made: {}", path.display());
@@ -198,8 +257,8 @@ impl Summary {
     }
 }
 
-fn as_map<S: Serializer, N: Serialize>(
-    pairs: &impl AsRef<[(N, f64)]>,
+fn as_map<S: Serializer, N: Serialize, V: Serialize>(
+    pairs: &impl AsRef<[(N, V)]>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
     let pairs = pairs.as_ref();
@@ -235,6 +294,11 @@ mod tests {
             "contacts",
             "line_search_steps",
             "converged",
+            "limits",
+            "smallest_fraction",
+            "largest_forces",
+            "contacts_by_bodies",
+            "reason",
         ] {
             assert!(line.get(key).is_some(), "{key}");
         }

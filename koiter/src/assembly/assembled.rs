@@ -236,6 +236,12 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
         (0..self.nodes.len()).all(|s| self.local.is_admissible(s, &self.gather(s, q)))
     }
 
+    fn undefined_element(&self, q: &[f64]) -> Option<String> {
+        let is_undefined = |s: &usize| !self.local.is_admissible(*s, &self.gather(*s, q));
+        let element = (0..self.nodes.len()).find(is_undefined)?;
+        Some(self.local.describe(element))
+    }
+
     fn worst_element(&self, q: &[f64]) -> Option<WorstElement> {
         let norms = parallel_map(self.nodes.len(), |s| {
             let (value, gradient) = self.local.gradient(s, &self.gather(s, q));
@@ -251,6 +257,7 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
         };
         Some(WorstElement {
             description: self.local.describe(worst),
+            unknown: self.nodes[worst].iter().flatten().map(|node| node.0).next(),
             gradient_norm: norms[worst],
         })
     }

@@ -103,6 +103,8 @@ pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
 pub struct WorstElement {
     /// The element in the user's terms.
     pub description: String,
+    /// One of its unknowns, which says what it is part of; `None` where the description says so.
+    pub unknown: Option<Dof>,
     /// Norm of its gradient [N or N·m]; not finite if the energy is not.
     pub gradient_norm: f64,
 }
@@ -143,6 +145,10 @@ pub trait Energy: Send + Sync {
     /// Whether Φ is defined at `q`.
     fn is_admissible(&self, _q: &[f64]) -> bool {
         true
+    }
+    /// An element that is not defined at `q`, in the user's terms.
+    fn undefined_element(&self, _q: &[f64]) -> Option<String> {
+        None
     }
     /// The element that resists most at `q`.
     fn worst_element(&self, _q: &[f64]) -> Option<WorstElement> {

@@ -31,6 +31,8 @@ pub struct Contact {
     pub(super) active: Vec<Pair>,
     pub(super) active_planes: Vec<ActiveVertex>,
     pub(super) smallest_gap: f64,
+    /// Where that is.
+    pub(super) closest: Option<Limiter>,
     pub(super) limiter: Option<Limiter>,
 }
 
@@ -48,17 +50,6 @@ pub(super) struct ActiveVertex {
     pub(super) vertex: u32,
     pub(super) plane: usize,
     pub(super) distance: f64,
-}
-
-/// What a contact energy tells after a step.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ContactStatistics {
-    /// Active pairs.
-    pub contacts: usize,
-    /// Smallest gap between surfaces [m]; infinity when nothing is within reach.
-    pub min_gap: f64,
-    /// Barrier stiffness [J/m²].
-    pub kappa: f64,
 }
 
 impl Contact {
@@ -82,6 +73,7 @@ impl Contact {
             active: Vec::new(),
             active_planes: Vec::new(),
             smallest_gap: f64::INFINITY,
+            closest: None,
             limiter: None,
         }
     }
@@ -230,42 +222,47 @@ impl Contact {
         ]
     }
 
-    /// Statistics at the state of the last [`Energy::begin_iteration`] or [`Contact::refresh`].
-    pub fn statistics(&self) -> ContactStatistics {
-        let contacts = self.active.len() + self.active_planes.len();
-        ContactStatistics {
-            contacts,
-            min_gap: self.smallest_gap,
-            kappa: self.kappa,
-        }
-    }
-
     /// Collects the active pairs at `q` among the candidates.
     pub fn refresh(&mut self, q: &[f64]) {
         const CHUNK: usize = 1024;
         let candidates = &self.candidates.pairs;
         let chunks = parallel_map(candidates.len().div_ceil(CHUNK), |chunk| {
             let mut active = Vec::new();
-            let mut smallest_gap = f64::INFINITY;
+            let mut smallest = (f64::INFINITY, None);
             for pair in candidates[chunk * CHUNK..].iter().take(CHUNK) {
                 let squared = pair.distance_squared(&self.pair_positions(pair, q));
                 let barrier = self.pair_barrier(pair);
                 if barrier.is_active(squared) {
                     active.push(*pair);
-                    smallest_gap = smallest_gap.min(squared.sqrt() - barrier.touching_distance);
+                    let gap = squared.sqrt() - barrier.touching_distance;
+                    if gap < smallest.0 {
+                        smallest = (gap, Some(Limiter::Pair(*pair)));
+                    }
                 }
             }
-            (active, smallest_gap)
+            (active, smallest)
         });
-        self.smallest_gap = (chunks.iter()).fold(f64::INFINITY, |gap, chunk| gap.min(chunk.1));
+        (self.smallest_gap, self.closest) = (f64::INFINITY, None);
         self.active.clear();
-        self.active
-            .extend(chunks.into_iter().flat_map(|chunk| chunk.0));
+        for (active, (gap, closest)) in chunks {
+            self.active.extend(active);
+            if gap < self.smallest_gap {
+                (self.smallest_gap, self.closest) = (gap, closest);
+            }
+        }
         self.active_planes = self.near_planes(q);
         for near in &self.active_planes {
             let gap = near.distance - self.mesh.offset(near.vertex);
-            self.smallest_gap = self.smallest_gap.min(gap);
+            if gap < self.smallest_gap {
+                self.smallest_gap = gap;
+                self.closest = Some(Limiter::Plane(near.vertex, near.plane));
+            }
         }
+    }
+
+    pub(super) fn describe_on_plane(&self, vertex: u32, plane: usize) -> String {
+        let name = &self.planes[plane].name;
+        format!("{} against '{name}'", self.mesh.describe_vertex(vertex))
     }
 
     pub(super) fn describe_pair(&self, pair: &Pair) -> String {

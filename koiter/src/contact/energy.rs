@@ -128,6 +128,7 @@ impl Energy for Contact {
         let description = self.describe_pair(&self.active[worst]);
         Some(WorstElement {
             description,
+            unknown: None,
             gradient_norm: norms[worst],
         })
     }

@@ -20,8 +20,9 @@ mod pair;
 mod plane;
 mod search;
 mod start;
+mod statistics;
 
-pub use active::{Contact, ContactStatistics};
+pub use active::Contact;
 pub use audit::{Intersection, intersections};
 pub use barrier::LogBarrier;
 pub use boxes::Aabb;
@@ -34,3 +35,4 @@ pub use friction_table::UnknownBody;
 pub use pair::{Pair, PairKind};
 pub use plane::CollisionPlane;
 pub use start::{StartError, TouchingPair};
+pub use statistics::ContactStatistics;

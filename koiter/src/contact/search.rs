@@ -156,17 +156,11 @@ impl Contact {
     /// What limited the last step, in the user's terms.
     pub(super) fn describe_limiter(&self) -> Option<String> {
         Some(match self.limiter.as_ref()? {
-            Limiter::Pair(pair) => format!("contact of {}", self.describe_pair(pair)),
-            Limiter::Plane(vertex, plane) => {
-                format!(
-                    "contact of {} with '{}'",
-                    self.mesh.describe_vertex(*vertex),
-                    self.planes[*plane].name
-                )
-            }
-            Limiter::Reach => "the number of candidate pairs".into(),
+            Limiter::Pair(pair) => self.describe_pair(pair),
+            Limiter::Plane(vertex, plane) => self.describe_on_plane(*vertex, *plane),
+            Limiter::Reach => "more candidate pairs than can be looked at".into(),
             Limiter::Length => {
-                format!("its length: it is over {LONGEST_STEP} times the scene's size")
+                format!("the step is over {LONGEST_STEP} times the scene's size")
             }
         })
     }

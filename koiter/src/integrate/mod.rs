@@ -1,6 +1,7 @@
 //! From one state to the next.
 
 mod arc_length;
+mod diagnostics;
 mod implicit_euler;
 mod linear;
 mod linear_static;
@@ -12,6 +13,7 @@ mod rest_directors;
 mod system;
 
 pub use arc_length::{ArcLength, ArcLengthOptions, PathPoint};
+pub use diagnostics::{Diagnostics, LargestForce};
 pub use implicit_euler::ImplicitEuler;
 pub use linear::{BucklingMode, LinearError, VibrationMode};
 pub use linear_static::LinearStatic;

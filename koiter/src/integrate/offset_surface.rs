@@ -89,6 +89,20 @@ impl ConfigurationSpace for OffsetSurfaces {
         largest
     }
 
+    /// The vertex that moves furthest; angles have no length to compare.
+    fn describe_largest(&self, dq: &[f64]) -> String {
+        let (mut largest, mut place) = (0.0, String::new());
+        for shell in &self.shells {
+            for (vertex, length) in lengths(&dq[shell.vertex_dofs()]).enumerate() {
+                if length > largest {
+                    largest = length;
+                    place = format!("vertex {vertex} of '{}'", shell.name);
+                }
+            }
+        }
+        place
+    }
+
     fn describe(&self, dof: usize) -> String {
         for shell in &self.shells {
             let vertices = shell.vertex_dofs();

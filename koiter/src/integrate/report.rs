@@ -1,5 +1,7 @@
 //! What a step tells.
 
+use super::diagnostics::Diagnostics;
+
 /// What one step did. Not converging is told here; it is not an error.
 #[derive(Clone, Debug, Default)]
 pub struct StepReport {
@@ -35,6 +37,8 @@ pub struct StepReport {
     pub negative_eigenvalues: Option<usize>,
     /// For a step that did not converge: which energy and elements resist, what limited the step, what to try.
     pub diagnosis: Option<String>,
+    /// Why it took the work it took.
+    pub diagnostics: Diagnostics,
 }
 
 impl StepReport {
@@ -42,6 +46,7 @@ impl StepReport {
     pub fn add_effort(&mut self, attempt: &Self) {
         self.newton_iterations += attempt.newton_iterations;
         self.line_search_steps += attempt.line_search_steps;
+        self.diagnostics.add_effort(&attempt.diagnostics);
         for (part, seconds) in &attempt.seconds {
             match self.seconds.iter_mut().find(|(name, _)| name == part) {
                 Some((_, total)) => *total += seconds,
@@ -71,6 +76,7 @@ impl StepReport {
             converged: self.converged && part.converged,
             energies,
             diagnosis: self.diagnosis.take().or(part.diagnosis),
+            diagnostics: std::mem::take(&mut self.diagnostics).at_end_of(part.diagnostics),
             intersections: self.intersections + part.intersections,
             ..part
         };

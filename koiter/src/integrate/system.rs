@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::arc_length::PathPoint;
+use super::diagnostics::{Diagnostics, LargestForce};
 use super::offset_surface::OffsetSurfaces;
 use super::report::{StepError, StepReport};
 use crate::Vec3;
@@ -326,6 +327,7 @@ impl System {
         let Solved { newton, friction } = solved;
         let clock = std::time::Instant::now();
         let mut seconds = newton.seconds.clone();
+        let mut diagnostics = Diagnostics::of_newton(&newton);
         if let Some(contact) = &mut self.contact {
             let touching = contact.touching(&next.q);
             if !touching.is_empty() {
@@ -344,10 +346,15 @@ impl System {
             let statistics = contact.statistics();
             (report.contacts, report.min_gap, report.kappa) =
                 (statistics.contacts, statistics.min_gap, statistics.kappa);
+            diagnostics.closest = statistics.closest;
+            diagnostics.contacts_by_bodies = statistics.by_bodies;
         } else {
             report.min_gap = f64::INFINITY;
         }
         seconds.push(("audit", clock.elapsed().as_secs_f64()));
+        let clock = std::time::Instant::now();
+        diagnostics.largest_forces = self.largest_forces(&next.q);
+        seconds.push(("diagnostics", clock.elapsed().as_secs_f64()));
         self.loads.rebase(&next.q);
         report.step = next.step;
         report.time = next.time;
@@ -360,43 +367,81 @@ impl System {
             .energies
             .extend(friction.map(|taken| ("friction", taken)));
         if !newton.converged {
-            report.diagnosis = Some(self.diagnose(&newton, &next.q));
+            report.diagnosis = Some(diagnose(&newton, &diagnostics));
         }
+        report.diagnostics = diagnostics;
         *state = next;
         Ok(report)
     }
 
-    fn diagnose(&self, newton: &NewtonReport, q: &[f64]) -> String {
-        let mut text = format!(
-            "Newton's method stopped after {} iterations with a last step of {:.2e} m",
-            newton.iterations, newton.last_step
-        );
-        if newton.remaining > 0.0 {
-            text += &format!(
-                "; prescribed motions are short of their targets by {:.2e} m",
-                newton.remaining
-            );
-        }
-        if let Some(limiter) = &newton.limiter {
-            text += &format!(
-                "; the step was cut to {:.1e} by {limiter}",
-                newton.last_fraction
-            );
-        }
-        let elastic = self.elastic.iter().map(|e| e.as_ref());
-        let contact = self.contact.iter().map(|c| c as &dyn Energy);
+    /// The element of each energy that pulls most; of energies of one name the strongest.
+    fn largest_forces(&self, q: &[f64]) -> Vec<LargestForce> {
+        let elastic = self.elastic.iter().map(|energy| energy.as_ref());
+        let contact = self.contact.iter().map(|contact| contact as &dyn Energy);
+        let mut found: Vec<LargestForce> = Vec::new();
         for energy in elastic.chain(contact) {
-            if let Some(worst) = energy.worst_element(q) {
-                let norm = worst.gradient_norm;
-                text += &format!(
-                    "; largest force of '{}': {norm:.2e} N at {}",
-                    energy.name(),
-                    worst.description
-                );
+            let Some(worst) = energy.worst_element(q) else {
+                continue;
+            };
+            let part = worst.unknown.and_then(|dof| self.shell_of(dof.0 as usize));
+            let largest = LargestForce {
+                energy: energy.name(),
+                force: worst.gradient_norm,
+                place: match part {
+                    Some(name) => format!("{} of '{name}'", worst.description),
+                    None => worst.description,
+                },
+            };
+            match found
+                .iter_mut()
+                .find(|known| known.energy == largest.energy)
+            {
+                Some(known) if known.force >= largest.force => {}
+                Some(known) => *known = largest,
+                None => found.push(largest),
             }
         }
-        text + ". Try a smaller time step, a finer mesh where it folds, or more iterations"
+        found
     }
+
+    /// Name of the shell that an unknown belongs to.
+    fn shell_of(&self, dof: usize) -> Option<&str> {
+        let mut shells = self.space.shells.iter();
+        let owns = |shell: &&ShellPart| {
+            shell.vertex_dofs().contains(&dof) || shell.extra_dofs().contains(&dof)
+        };
+        shells.find(owns).map(|shell| shell.name.as_str())
+    }
+}
+
+/// Why Newton's method did not converge, and what to try.
+fn diagnose(newton: &NewtonReport, diagnostics: &Diagnostics) -> String {
+    let mut text = format!(
+        "Newton's method stopped after {} iterations with a last step of {:.2e} m",
+        newton.iterations, newton.last_step
+    );
+    if !diagnostics.residual_at.is_empty() {
+        text += &format!(", largest at {}", diagnostics.residual_at);
+    }
+    if newton.remaining > 0.0 {
+        text += &format!(
+            "; prescribed motions are short of their targets by {:.2e} m",
+            newton.remaining
+        );
+    }
+    text += &format!("; {}", diagnostics.reason(newton.iterations));
+    for largest in &diagnostics.largest_forces {
+        let LargestForce {
+            energy,
+            force,
+            place,
+        } = largest;
+        text += &format!("; largest force of '{energy}': {force:.2e} N at {place}");
+    }
+    format!(
+        "{text}. {}; or more iterations (solver.max_iterations)",
+        diagnostics.advice()
+    )
 }
 
 impl From<(usize, SolveError)> for StepError {

@@ -6,6 +6,7 @@
 
 use std::time::Instant;
 
+use super::limits::{DECREASE, Limiter};
 use super::newton::{NewtonReport, Problem};
 use crate::assembly::Energy;
 
@@ -31,8 +32,8 @@ pub(super) struct SearchLine<'a> {
 pub(super) struct Taken {
     /// Newton steps: 0 if no fraction will do.
     pub(super) steps: f64,
-    /// Whether the energy, not contact, kept it from going further.
-    pub(super) by_energy: bool,
+    /// What kept it from going further, if that was an energy and not a bound such as contact.
+    pub(super) stopped_by: Option<Limiter>,
 }
 
 /// Sum of the energies, and of their absolute values.
@@ -58,7 +59,10 @@ pub(super) fn line_search(
         let allowed = energy.max_step(q, &whole);
         if allowed < bound {
             bound = allowed;
-            report.limiter = energy.step_limiter();
+            report.limiter = Some(Limiter {
+                by: energy.name(),
+                place: energy.step_limiter().unwrap_or_default(),
+            });
         }
     }
     if bound * line.reach >= 1.0 {
@@ -67,6 +71,7 @@ pub(super) fn line_search(
     report.spend("collision_detection", start);
     let start = Instant::now();
     let taken = search(problem, q, line, bound * line.reach, report);
+    report.limiter = taken.stopped_by.clone().or(report.limiter.take());
     report.spend("line_search", start);
     taken
 }
@@ -90,12 +95,14 @@ fn search(
     let mut value_at = |trial: &[f64]| {
         report.line_search_steps += 1;
         match problem.energies.iter().find(|e| !e.is_admissible(trial)) {
-            Some(energy) => Err(energy.name()),
+            Some(energy) => Err(&**energy as &dyn Energy),
             None => Ok(total(&problem.energies, trial).0),
         }
     };
     let mut steps = longest.min(1.0);
     let mut by_energy = false;
+    // The energy that is not defined at the last point that was refused, if that is why.
+    let mut undefined: Option<(&dyn Energy, Vec<f64>)> = None;
     for _ in 0..MAX_HALVINGS {
         let trial = point(steps);
         match value_at(&trial) {
@@ -113,18 +120,31 @@ fn search(
                 q.copy_from_slice(&best.2);
                 return Taken {
                     steps: best.0,
-                    by_energy,
+                    stopped_by: by_energy.then(|| stopped_by(undefined)),
                 };
             }
-            Ok(_) => report.limiter = Some("the energy does not decrease further on".into()),
-            Err(energy) => report.limiter = Some(format!("{energy} is not defined further on")),
+            Ok(_) => undefined = None,
+            Err(energy) => undefined = Some((energy, trial)),
         }
         by_energy = true;
         steps *= 0.5;
     }
     Taken {
         steps: 0.0,
-        by_energy,
+        stopped_by: Some(stopped_by(undefined)),
+    }
+}
+
+fn stopped_by(undefined: Option<(&dyn Energy, Vec<f64>)>) -> Limiter {
+    match undefined {
+        Some((energy, trial)) => Limiter {
+            by: energy.name(),
+            place: energy.undefined_element(&trial).unwrap_or_default(),
+        },
+        None => Limiter {
+            by: DECREASE,
+            place: String::new(),
+        },
     }
 }
 

@@ -3,6 +3,7 @@
 mod cholesky;
 mod eigen;
 mod ldlt;
+mod limits;
 mod line_search;
 mod multifrontal;
 mod newton;
@@ -16,6 +17,7 @@ mod workspace;
 pub use cholesky::{LinearSolver, NotPositiveDefinite, SparseCholesky};
 pub use eigen::{EigenNotConverged, EigenPair, largest_eigenpairs};
 pub use ldlt::SignedCholesky;
+pub use limits::{DECREASE, Limit, Limiter};
 pub use multifrontal::Multifrontal;
 pub use newton::{
     HessianChoice, NewtonOptions, NewtonReport, Problem, SolveError, minimize, minimize_stably,

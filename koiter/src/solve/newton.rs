@@ -7,6 +7,7 @@
 
 use std::time::Instant;
 
+use super::limits::{Limit, Limiter};
 use super::line_search::{SearchLine, line_search};
 use super::pace::Pace;
 use super::saddle::leave_saddle;
@@ -62,9 +63,13 @@ pub struct NewtonReport {
     /// Largest distance of a prescribed unknown from its target.
     pub remaining: f64,
     /// What limited the last line search.
-    pub limiter: Option<String>,
+    pub limiter: Option<Limiter>,
     /// The last fraction of the Newton step that was taken.
     pub last_fraction: f64,
+    /// What cut line searches short, by cause.
+    pub limits: Vec<Limit>,
+    /// Where the last step was largest, in the user's terms.
+    pub last_step_at: String,
     /// Seconds by part.
     pub seconds: Vec<(&'static str, f64)>,
     /// Factorisations that needed a diagonal shift.
@@ -86,9 +91,23 @@ impl NewtonReport {
         self.shifts += before.shifts;
         self.indefinite += before.indefinite;
         self.saddles += before.saddles;
+        let later = std::mem::replace(&mut self.limits, before.limits);
+        Limit::join(&mut self.limits, later);
         for (part, seconds) in before.seconds {
             self.add_seconds(part, seconds);
         }
+    }
+
+    /// Counts what cut the last line search short, if anything did.
+    fn count_limit(&mut self) {
+        let limiter = self.limiter.iter().filter(|_| self.last_fraction < 1.0);
+        let limits = limiter.map(|limiter| Limit {
+            by: limiter.by,
+            count: 1,
+            smallest_fraction: self.last_fraction,
+            place: limiter.place.clone(),
+        });
+        Limit::join(&mut self.limits, limits);
     }
 
     pub(super) fn spend(&mut self, part: &'static str, since: Instant) {
@@ -191,16 +210,18 @@ pub fn minimize(
             moving,
         };
         let taken = line_search(problem, q, &line, &mut report);
-        pace.observe(report.last_step, taken.steps, taken.by_energy);
+        pace.observe(report.last_step, taken.steps, taken.stopped_by.is_some());
         report.last_fraction = taken.steps.min(1.0);
+        report.count_limit();
         if moving && taken.steps >= 1.0 {
             reach_targets(problem, q);
         }
         report.remaining = step.remaining * (1.0 - report.last_fraction);
         // A step within the tolerance that the line search shortened was shortened by round-off or a contact's slack.
         let small = report.last_step < options.tolerance && step.remaining < options.tolerance;
-        if small && (!moving || taken.steps >= 1.0) {
-            report.converged = true;
+        report.converged = small && (!moving || taken.steps >= 1.0);
+        if report.converged || report.iterations == options.max_iterations {
+            report.last_step_at = problem.space.describe_largest(&step.direction);
             break;
         }
     }

@@ -250,6 +250,7 @@ impl Energy for QuadraticVertex {
         };
         Some(WorstElement {
             description: format!("vertex {worst}"),
+            unknown: Some(Dof((self.first_vertex + 3 * worst) as u32)),
             gradient_norm: norms[worst],
         })
     }
