@@ -5,7 +5,8 @@ mod studies;
 mod validation;
 
 pub(crate) use aids::{
-    CatalogueArguments, CompletionsArguments, ManArguments, NewArguments, PlotArguments, Template,
+    CatalogueArguments, CompletionsArguments, Figure, ManArguments, NewArguments, PlotArguments,
+    Template,
 };
 
 pub(crate) use studies::{

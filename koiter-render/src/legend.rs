@@ -158,6 +158,15 @@ pub(crate) struct Scale {
 impl Scale {
     /// Steps of 1, 2 or 5 times a power of ten: the largest that gives four or more.
     pub(crate) fn new(low: f64, high: f64) -> Self {
+        Self::with_least_step(low, high, 0.0)
+    }
+
+    /// The same for numbers of things, of which there is no half.
+    pub(crate) fn of_counts(low: f64, high: f64) -> Self {
+        Self::with_least_step(low, high, 1.0)
+    }
+
+    fn with_least_step(low: f64, high: f64, least: f64) -> Self {
         let (low, high) = (low.min(high), low.max(high));
         let largest = low.abs().max(high.abs());
         let exponent = if largest == 0.0 || (1e-2..1e5).contains(&largest) {
@@ -183,7 +192,8 @@ impl Scale {
         let step = steps
             .into_iter()
             .find(|&step| count(step) >= 4)
-            .unwrap_or(steps[3]);
+            .unwrap_or(steps[3])
+            .max(least / unit);
         let (first, last) = (
             (low / unit / step - 1e-6).ceil() as i64,
             (high / unit / step + 1e-6).floor() as i64,
@@ -245,6 +255,18 @@ mod tests {
             ["−0.10", "−0.05", "0.00", "0.05", "0.10"]
         );
         assert_eq!(labels(3.0, 47.0), ["10", "20", "30", "40"]);
+    }
+
+    #[test]
+    fn there_is_no_half_of_a_thing() {
+        let labels = |high: f64| -> Vec<String> {
+            let scale = Scale::of_counts(0.0, high);
+            scale.ticks.iter().map(|&tick| scale.label(tick)).collect()
+        };
+        assert_eq!(labels(1.06), ["0", "1"]);
+        assert_eq!(labels(3.2), ["0", "1", "2", "3"]);
+        assert_eq!(labels(41.0), ["0", "10", "20", "30", "40"]);
+        assert_eq!(labels(2.5e5), ["0", "50", "100", "150", "200", "250"]);
     }
 
     #[test]

@@ -60,6 +60,7 @@ pub(crate) struct CatalogueArguments {
 Examples:
   koiter plot results/sphere-drape -o drape.svg
   koiter plot results/sphere-drape -o drape.png --size 1600x1200
+  koiter plot results/sphere-drape -o slow.png --figures seconds,iterations,fraction
 
 Reads stats.jsonl, also of a run that still goes on or was stopped.")]
 pub(crate) struct PlotArguments {
@@ -69,12 +70,38 @@ pub(crate) struct PlotArguments {
     /// Figure to write, .svg or .png [default: plot.svg in the result folder]
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
+    /// What to draw, from above [default: all there is]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "FIGURES")]
+    pub(crate) figures: Vec<Figure>,
     /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "1200x900", value_parser = super::parse_size)]
+    #[arg(long, value_name = "WxH", default_value = "1200x1400", value_parser = super::parse_size)]
     pub(crate) size: (u32, u32),
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// A figure of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Figure {
+    /// Load factor of a path followed by arc length
+    LoadFactor,
+    /// All energies
+    Energies,
+    /// Energies whose zero means something, on a logarithmic axis
+    SmallEnergies,
+    /// Seconds a step, by part
+    Seconds,
+    /// Newton iterations a step, by what cut them short
+    Iterations,
+    /// The smallest fraction of a Newton step that a line search left
+    Fraction,
+    /// Active contact pairs, by bodies
+    Contacts,
+    /// The smallest gap
+    Gap,
+    /// Stiffness of the barrier
+    Stiffness,
 }
 
 #[derive(Debug, Args)]

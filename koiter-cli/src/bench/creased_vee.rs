@@ -187,6 +187,7 @@ fn draw(cells: &[Cell], models: &[BendingModel], folder: &Path) -> Result<(), Fa
                 series: shown.map(curve).collect(),
                 weight: 1.0,
                 if_empty: "no models of this energy".to_owned(),
+                ..Panel::default()
             }
         };
         let chart = Chart {

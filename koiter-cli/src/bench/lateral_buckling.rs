@@ -278,6 +278,7 @@ fn plot_curves(
             series,
             weight: 1.0,
             if_empty: "no loads".into(),
+            ..Panel::default()
         }
     });
     let largest = options.loads.iter().copied().fold(0.0, f64::max);

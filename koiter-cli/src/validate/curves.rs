@@ -41,6 +41,7 @@ pub(super) fn draw(case: &Case, studies: &[Study], folder: &Path) -> Result<(), 
             series,
             weight: 1.0,
             if_empty: "no steps".into(),
+            ..Panel::default()
         });
     }
     let chart = Chart {

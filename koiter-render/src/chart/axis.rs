@@ -8,6 +8,7 @@ pub(super) struct Axis {
     low: f64,
     high: f64,
     is_log: bool,
+    is_count: bool,
     /// Pixels of `low` and `high`.
     pixels: (f64, f64),
 }
@@ -33,18 +34,33 @@ impl Axis {
             low,
             high,
             is_log: false,
+            is_count: false,
             pixels,
+        }
+    }
+
+    /// This, for numbers of things.
+    fn of_counts(self, is_count: bool) -> Self {
+        Self { is_count, ..self }
+    }
+
+    fn scale(&self) -> Scale {
+        match self.is_count {
+            true => Scale::of_counts(self.low, self.high),
+            false => Scale::new(self.low, self.high),
         }
     }
 
     /// Over whole decades.
     pub(super) fn logarithmic(low: f64, high: f64, pixels: (f64, f64)) -> Self {
         let (bottom, top) = (low.log10().floor(), high.log10().ceil());
-        let top = top.max(bottom + 1.0);
+        // A single power of ten stands at the top: fractions end at 1.
+        let bottom = bottom.min(top - 1.0);
         Self {
             low: bottom,
             high: top,
             is_log: true,
+            is_count: false,
             pixels,
         }
     }
@@ -65,7 +81,7 @@ impl Axis {
     /// Values to mark, with their labels.
     pub(super) fn ticks(&self) -> Vec<(f64, String)> {
         if !self.is_log {
-            let scale = Scale::new(self.low, self.high);
+            let scale = self.scale();
             return scale
                 .ticks
                 .iter()
@@ -97,7 +113,7 @@ impl Axis {
                 format!("{name} [{unit}]")
             };
         }
-        Scale::new(self.low, self.high).title(name, unit)
+        self.scale().title(name, unit)
     }
 }
 
@@ -125,7 +141,10 @@ pub(super) fn vertical_axis(panel: &Panel, pixels: (f64, f64)) -> Option<Axis> {
     Some(match panel.style {
         Style::LogLines => Axis::logarithmic(low, high, pixels),
         // Zero is the bottom, and the curve does not touch the frame.
-        _ if low >= 0.0 => Axis::linear(0.0, if high > 0.0 { 1.06 * high } else { 1.0 }, pixels),
+        _ if low >= 0.0 => {
+            let top = if high > 0.0 { 1.06 * high } else { 1.0 };
+            Axis::linear(0.0, top, pixels).of_counts(panel.is_count)
+        }
         _ => {
             let margin = 0.05 * (high.max(0.0) - low);
             Axis::linear(low - margin, high.max(0.0) + margin, pixels)

@@ -54,6 +54,8 @@ pub struct Panel {
     pub series: Vec<Series>,
     /// Height relative to that of the other panels.
     pub weight: f64,
+    /// Whether the values are numbers of things, which have no decimals.
+    pub is_count: bool,
     /// Said instead when there is nothing to draw.
     pub if_empty: String,
 }

@@ -16,6 +16,7 @@ fn panel(style: Style, series: Vec<Series>) -> Panel {
         series,
         weight: 1.0,
         if_empty: "no values".into(),
+        ..Panel::default()
     }
 }
 
@@ -231,4 +232,25 @@ fn panels_beside_each_other_have_axes_of_their_own_and_signs_at_points() {
     };
     // Three points and the legend, for two curves.
     assert_eq!(colors.map(signs), [8, 8]);
+}
+
+#[test]
+fn numbers_of_things_have_whole_ticks() {
+    let few = Series {
+        points: vec![[5.0, 1.0], [10.0, 2.0]],
+        ..Series::default()
+    };
+    let labels = |is_count: bool| {
+        let panel = Panel {
+            is_count,
+            ..panel(Style::Stack, vec![few.clone()])
+        };
+        let chart = Chart {
+            x_range: (0.0, 10.0),
+            ..chart(vec![panel])
+        };
+        chart.to_svg(400, 300).unwrap()
+    };
+    assert!(labels(false).contains(">1.5<"));
+    assert!(labels(true).contains(">1<") && !labels(true).contains(">1.5<"));
 }
