@@ -11,6 +11,9 @@ const SMALL_SHARE: f64 = 0.02;
 /// Energies that may be negative, or have no natural zero: not for a logarithmic axis.
 const POTENTIALS: [&str; 2] = ["gravity", "loads"];
 
+/// Energies below this share of the largest are round-off, which would take up most of a logarithmic axis.
+const LEAST_ENERGY: f64 = 1e-9;
+
 /// Panels of the figures `wanted`, or of all that have something to show. Figures that a line lacks, or that are null, are
 /// gaps.
 pub(super) fn page(title: &str, lines: &[Value], is_over: bool, wanted: &[Figure]) -> Chart {
@@ -174,14 +177,24 @@ impl Page<'_> {
         series
     }
 
+    /// Those of outer forces last, so that the others have the same colours with them and without.
     fn energies(&self) -> Vec<Series> {
-        self.table("energies")
+        let mut energies = self.table("energies");
+        energies.sort_by_key(is_potential);
+        energies
     }
 
-    /// Those whose zero means something, that are ever above it.
+    /// Those whose zero means something, that are ever above it; what is next to nothing is a gap.
     fn small_energies(&self) -> Vec<Series> {
         let mut energies = self.energies();
-        energies.retain(|series| !POTENTIALS.contains(&series.name.as_str()) && size(series) > 0.0);
+        energies.retain(|series| !is_potential(series) && size(series) > 0.0);
+        let values = energies.iter().flat_map(|series| &series.points);
+        let largest = values.map(|point| point[1]).fold(0.0, f64::max);
+        for point in energies.iter_mut().flat_map(|series| &mut series.points) {
+            if point[1] < LEAST_ENERGY * largest {
+                point[1] = f64::NAN;
+            }
+        }
         energies
     }
 
@@ -242,6 +255,10 @@ impl Page<'_> {
     }
 }
 
+fn is_potential(series: &Series) -> bool {
+    POTENTIALS.contains(&series.name.as_str())
+}
+
 /// Sum of all values, gaps and signs left out.
 fn size(series: &Series) -> f64 {
     let values = series.points.iter().map(|point| point[1].abs());
@@ -299,10 +316,10 @@ mod tests {
         let energies = &chart.panels[0].series;
         assert_eq!(
             (energies[0].name.as_str(), energies[1].name.as_str()),
-            ("gravity", "contact")
+            ("contact", "gravity")
         );
-        assert!(energies[1].points[0][1].is_nan() && energies[1].points[1] == [0.2, 0.5]);
-        assert_eq!(energies[0].points[2][0], 3.0);
+        assert!(energies[0].points[0][1].is_nan() && energies[0].points[1] == [0.2, 0.5]);
+        assert_eq!(energies[1].points[2][0], 3.0);
         let text = chart.to_svg(800, 600).unwrap();
         assert!(!text.contains("NaN") && text.contains("gravity"));
     }

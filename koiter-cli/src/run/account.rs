@@ -163,20 +163,15 @@ impl Account {
 impl Limit {
     fn line(&self, iterations: usize) -> String {
         let what = match self.by.as_str() {
-            "decrease" => "the energy did not fall over the whole of",
-            by => by,
-        };
-        let verb = if self.by == "decrease" {
-            ""
-        } else {
-            " cut short"
+            "decrease" => "the energy did not fall over the whole of".to_owned(),
+            by => format!("{} cut short", by.replace('_', " ")),
         };
         let place = match self.at.is_empty() {
             true => String::new(),
             false => format!(", {}", self.at),
         };
         format!(
-            "limited by: {what}{verb} {} of {iterations} Newton steps; the shortest, {:.1e}, in step {}{place}",
+            "limited by: {what} {} of {iterations} Newton steps; the shortest, {:.1e}, in step {}{place}",
             self.count, self.smallest_fraction, self.step
         )
     }

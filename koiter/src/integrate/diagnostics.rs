@@ -117,6 +117,9 @@ impl Diagnostics {
                 "The fold there is sharper than the mesh can follow: try a finer mesh, a smaller time.dt, or a bending \
                  model without a bound, such as dcs"
             }
+            Some("strain_limit") => {
+                "Try a smaller time.dt, a slower motion of what pulls there, or a wider strain limit"
+            }
             Some("membrane") => "Try a smaller time.dt, or a slower motion of what pulls there",
             Some(DECREASE) => {
                 "The energy hardly falls along the steps: try a smaller time.dt, or a larger tolerance (solver.*_tolerance) \
@@ -131,7 +134,7 @@ impl Diagnostics {
 fn describe(limit: &Limit, iterations: usize) -> String {
     let mut text = match limit.by {
         DECREASE => "the energy did not fall over the whole of".to_owned(),
-        by => format!("{by} cut short"),
+        by => format!("{} cut short", by.replace('_', " ")),
     };
     let (count, fraction) = (limit.count, limit.smallest_fraction);
     let _ = write!(
