@@ -1,6 +1,7 @@
 //! Pictures and films of a result folder.
 
 mod frame_view;
+mod pace;
 
 use std::path::{Path, PathBuf};
 
@@ -15,11 +16,10 @@ use koiter_render::{
 use crate::failure::Failure;
 use crate::output::quoted;
 use frame_view::{FrameView, Topology};
+use pace::{decimals, pace};
 
 /// Films of a run: small, so that they do not keep the user waiting.
 const FILM_SIZE: (u32, u32) = (640, 360);
-/// Most frames a second of a film in real time.
-const MAX_FPS: f64 = 30.0;
 /// Most frames of the film after a run; of longer runs every second, third, … frame is shown.
 const MAX_FILM_FRAMES: usize = 150;
 /// Share of the values that the colours cover; the rest (tight folds) is drawn in the last colour.
@@ -100,6 +100,8 @@ pub(crate) struct Album<'a> {
     reader: &'a ResultReader,
     topology: Topology,
     look: Look,
+    /// Of all frames [s].
+    times: Vec<f64>,
     bounds: Bounds,
     /// Colours of the field, the same for all frames.
     range: Option<(f64, f64)>,
@@ -109,7 +111,7 @@ impl<'a> Album<'a> {
     /// Looks through all frames for the camera and the range of colours.
     pub(crate) fn open(reader: &'a ResultReader, look: Look) -> Result<Self, Failure> {
         let topology = Topology::new(reader);
-        let (mut bounds, mut values) = (Bounds::EMPTY, Vec::new());
+        let (mut bounds, mut values, mut times) = (Bounds::EMPTY, Vec::new(), Vec::new());
         for index in 0..reader.len() {
             let frame = reader.frame(index).map_err(Failure::result)?;
             if index == 0
@@ -118,6 +120,7 @@ impl<'a> Album<'a> {
             {
                 return Err(missing_field(&frame, name));
             }
+            times.push(frame.time);
             let view = FrameView::new(&topology, frame, look.color.as_deref());
             bounds = bounds.join(&view.bounds());
             values.extend(view.values());
@@ -126,6 +129,7 @@ impl<'a> Album<'a> {
             reader,
             topology,
             look,
+            times,
             bounds,
             range: color_range(values),
         })
@@ -138,9 +142,9 @@ impl<'a> Album<'a> {
             .map_err(Failure::run)
     }
 
-    /// Writes a film of all frames, in real time unless `fps` is given.
+    /// Writes a film of all frames, in real time where they are even in time, unless `fps` is given.
     pub(crate) fn film(&self, path: &Path, fps: Option<f64>, quiet: bool) -> Result<(), Failure> {
-        let (stride, natural) = self.pace(usize::MAX)?;
+        let (stride, natural) = pace(&self.times, usize::MAX);
         self.write_film(path, stride, fps.unwrap_or(natural), quiet)
             .map_err(|error| match error {
                 FilmFailure::Film(error @ FilmError::FrameRate { .. }) => Failure::input(error),
@@ -151,7 +155,7 @@ impl<'a> Album<'a> {
 
     /// `film.mp4`, or `film.gif` where there is no ffmpeg.
     fn film_in_any_format(&self, folder: &Path, quiet: bool) -> Result<PathBuf, Failure> {
-        let (stride, fps) = self.pace(MAX_FILM_FRAMES)?;
+        let (stride, fps) = pace(&self.times, MAX_FILM_FRAMES);
         let mut path = folder.join(FILMS[0]);
         let mut result = self.write_film(&path, stride, fps, quiet);
         if let Err(FilmFailure::Film(FilmError::FfmpegMissing | FilmError::Ffmpeg { .. })) = result
@@ -194,33 +198,9 @@ impl<'a> Album<'a> {
         Ok(())
     }
 
-    /// Which frames to show, and how many a second, for real time with few frames.
-    fn pace(&self, max_frames: usize) -> Result<(usize, f64), Failure> {
-        let count = self.reader.len();
-        if count < 2 {
-            return Ok((1, 1.0));
-        }
-        let time = |index: usize| {
-            self.reader
-                .frame_info(index)
-                .map_err(Failure::run)
-                .map(|info| info.time)
-        };
-        let interval = (time(count - 1)? - time(0)?) / (count - 1) as f64;
-        if !(interval.is_finite() && interval > 0.0) {
-            return Ok((1, MAX_FPS));
-        }
-        let for_pace = (1.0 / (interval * MAX_FPS) - 1e-9).ceil() as usize;
-        let stride = for_pace.max(count.div_ceil(max_frames)).clamp(1, count);
-        Ok((
-            stride,
-            (1.0 / (interval * stride as f64)).clamp(1.0, MAX_FPS),
-        ))
-    }
-
     fn draw(&self, index: usize, quality: Quality) -> Result<Image, Failure> {
         let frame = self.reader.frame(index).map_err(Failure::result)?;
-        let caption = format!("t = {:.2} s", frame.time);
+        let caption = format!("t = {:.*} s", decimals(&self.times), frame.time);
         let view = FrameView::new(&self.topology, frame, self.look.color.as_deref());
         let (width, height) = self.look.size;
         // A film keeps its camera; a picture is framed for itself.
