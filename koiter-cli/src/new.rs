@@ -153,7 +153,7 @@ mod tests {
             (
                 &schema["$defs"]["SolverSpec"]["properties"],
                 &[
-                    "smallest_step",
+                    "newmark",
                     "first_arc_length",
                     "largest_arc_length",
                     "last_load_factor",

@@ -1,7 +1,7 @@
 //! A simulation that is dropped and restored from its snapshot goes on to the same bits.
 #![cfg(feature = "serde")]
 
-use koiter::integrate::StepReport;
+use koiter::integrate::{Memory, StepReport};
 use koiter::scene::{Anchor, NoFiles, Scene, SceneFile, Simulation, Snapshot};
 
 /// All that has a memory: self-contact, friction, a ball that moves, a mesh that turns, a plane, a clamp that is let
@@ -57,9 +57,11 @@ fn simulation() -> Simulation {
 }
 
 fn simulation_with(bending: &str) -> Simulation {
-    let named = format!("name = \"cloth\"\nbending = \"{bending}\"");
-    let text = SCENE.replace("name = \"cloth\"", &named);
-    let file = SceneFile::parse("scene.toml", &text, &[]).unwrap();
+    simulation_set(&[format!("shell.cloth.bending={bending}")])
+}
+
+fn simulation_set(overrides: &[String]) -> Simulation {
+    let file = SceneFile::parse("scene.toml", SCENE, overrides).unwrap();
     let scene = Scene::build(&file, &NoFiles).unwrap();
     Simulation::new(scene.model).unwrap()
 }
@@ -133,6 +135,29 @@ fn other_unknowns_are_restored_to_the_same_bits() {
     }
 }
 
+/// BDF2 and Newmark remember more of the last step, and steps that were cut the share at which they ended.
+#[test]
+fn other_integrators_and_cut_steps_are_restored_to_the_same_bits() {
+    for integrator in ["implicit-euler", "bdf2", "newmark"] {
+        let set = ["solver.max_iterations=10", "shell.cloth.bending=ds-theta"].map(String::from);
+        let set = [&set[..], &[format!("integrator={integrator}")]].concat();
+        let mut whole = simulation_set(&set);
+        let mut parts = 0;
+        for step in 0..16 {
+            let before = whole.snapshot();
+            let report = whole.step(0.02).unwrap();
+            let mut resumed = simulation_set(&set);
+            resumed.restore(&before).unwrap();
+            let what = format!("of {integrator} after a pause at {step}");
+            let again = resumed.step(0.02).unwrap();
+            assert_eq!(figures(&again), figures(&report), "{what}");
+            assert_same_bits(&resumed.snapshot(), &whole.snapshot(), &what);
+            parts = parts.max(report.parts);
+        }
+        assert!(parts > 1, "{integrator}: no step was cut");
+    }
+}
+
 #[cfg(feature = "parallel")]
 #[test]
 fn one_and_two_threads_leave_the_same_snapshots() {
@@ -161,6 +186,15 @@ fn a_snapshot_of_another_model_is_refused() {
     };
     assert!(refused(&|s| s.state.q.push(0.0)).contains("positions for"));
     assert!(refused(&|s| s.state.velocities[3] = f64::NAN).contains("velocities is NaN"));
+    assert!(
+        refused(&|s| s.state.accelerations[0] = f64::INFINITY).contains("accelerations is inf")
+    );
+    let kept = Memory::Before {
+        dt: 0.02,
+        q: vec![],
+        velocities: vec![],
+    };
+    assert!(refused(&|s| s.state.memory = kept.clone()).contains("integrator kept"));
     assert!(refused(&|s| s.state.time = -1.0).contains("time is -1"));
     let anchor = |constraint, len| Anchor {
         constraints: vec![constraint],

@@ -51,6 +51,10 @@ pub(super) struct StatsLine<'a> {
     stable: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     negative_eigenvalues: Option<usize>,
+    /// 1, unless the step was cut because it failed.
+    parts: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cut: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     diagnosis: Option<&'a str>,
 }
@@ -113,6 +117,8 @@ impl<'a> StatsLine<'a> {
             load_factor: report.load_factor,
             stable: report.negative_eigenvalues.map(|count| count == 0),
             negative_eigenvalues: report.negative_eigenvalues,
+            parts: report.parts,
+            cut: report.cut.as_deref(),
             diagnosis: report.diagnosis.as_deref(),
         }
     }
@@ -131,6 +137,8 @@ pub(super) struct Summary {
     #[serde(serialize_with = "as_map")]
     pub(super) seconds_by_part: Vec<(String, f64)>,
     pub(super) newton_iterations: usize,
+    /// Steps that failed as a whole and were taken in parts.
+    pub(super) steps_in_parts: usize,
     pub(super) min_gap: f64,
     /// `null` where contact is off and nothing was checked.
     pub(super) intersections: Option<usize>,
@@ -153,6 +161,7 @@ impl Summary {
             seconds: 0.0,
             seconds_by_part: Vec::new(),
             newton_iterations: 0,
+            steps_in_parts: 0,
             min_gap: f64::INFINITY,
             intersections: contact.then_some(0),
             vertices: stats.vertices,
@@ -170,6 +179,7 @@ impl Summary {
         self.steps = report.step;
         self.time = report.time;
         self.newton_iterations += report.newton_iterations;
+        self.steps_in_parts += usize::from(report.parts > 1);
         self.min_gap = self.min_gap.min(report.min_gap);
         if let Some(count) = &mut self.intersections {
             *count += report.intersections;
@@ -192,6 +202,7 @@ impl Summary {
         self.steps = step;
         self.time = time;
         self.newton_iterations = totals.newton_iterations as usize;
+        self.steps_in_parts = totals.in_parts as usize;
         self.min_gap = totals.min_gap;
         self.intersections = self.intersections.map(|_| totals.intersections as usize);
         self.converged = totals.unconverged == 0;
@@ -202,6 +213,7 @@ impl Summary {
     pub(super) fn totals(&self) -> Totals {
         Totals {
             newton_iterations: self.newton_iterations as u64,
+            in_parts: self.steps_in_parts as u64,
             intersections: self.intersections.unwrap_or(0) as u64,
             min_gap: self.min_gap,
             seconds_by_part: self.seconds_by_part.clone(),
@@ -229,6 +241,12 @@ impl Summary {
             self.seconds,
             self.newton_iterations
         );
+        if self.steps_in_parts > 0 {
+            say!(
+                "{} steps were taken in parts, for they failed as a whole: 'cut' in stats.jsonl says why",
+                self.steps_in_parts
+            );
+        }
         match self.intersections {
             Some(count) => say!("{count} intersections; {gap}"),
             None => say!("contact is off: intersections were not looked for"),
@@ -320,6 +338,7 @@ mod tests {
                 step,
                 time: 0.1 * step as f64,
                 newton_iterations: 5,
+                parts: step,
                 seconds: vec![("solve", 0.5)],
                 min_gap: 1.0 / step as f64,
                 converged,
@@ -330,6 +349,7 @@ mod tests {
             (summary.steps, summary.newton_iterations, summary.min_gap),
             (2, 10, 0.5)
         );
+        assert_eq!(summary.steps_in_parts, 1);
         assert_eq!(summary.seconds_by_part, [("solve".to_owned(), 1.0)]);
         assert!(!summary.converged);
     }

@@ -116,6 +116,13 @@ impl<'a> Recorder<'a> {
             self.write_frame(simulation)?;
         }
         self.summary.add(report);
+        if let Some(reason) = &report.cut
+            && self.summary.steps_in_parts == 1
+        {
+            // Once a run, as below.
+            let (step, parts) = (report.step, report.parts);
+            log::warn!(target: "koiter", "step {step} failed as a whole and was taken in {parts} parts: {reason}");
+        }
         if !report.converged {
             self.unconverged += 1;
             // Once a run: the others are counted at its end, and told one by one in stats.jsonl.

@@ -343,16 +343,14 @@ impl Integrator for ArcLength {
         }
         self.pattern.apply(end.load_factor, system);
         system.loads.rebase(&end.q);
+        let point = PathPoint {
+            load_factor: end.load_factor,
+            arc_length: (growth * arc_length).min(self.options.largest),
+            increment: difference(&end.q, &start),
+        };
         *state = State {
-            velocities: vec![0.0; end.q.len()],
-            time: report.time,
-            step: report.step,
-            path: Some(PathPoint {
-                load_factor: end.load_factor,
-                arc_length: (growth * arc_length).min(self.options.largest),
-                increment: difference(&end.q, &start),
-            }),
-            q: end.q,
+            path: Some(point),
+            ..State::at_rest(end.q, report.time, report.step)
         };
         report.residual = end.last_step;
         report.energies = system.energies(state);

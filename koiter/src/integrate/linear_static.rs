@@ -27,13 +27,7 @@ impl Integrator for LinearStatic {
         let mut q = state.q.clone();
         system.space.retract(&state.q, &u, &mut q);
         system.loads.rebase(&q);
-        *state = State {
-            velocities: vec![0.0; q.len()],
-            q,
-            time: state.time + dt,
-            step,
-            path: None,
-        };
+        *state = State::at_rest(q, state.time + dt, step);
         Ok(StepReport {
             step,
             time: state.time,

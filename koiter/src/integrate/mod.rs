@@ -1,31 +1,50 @@
 //! From one state to the next.
 
 mod arc_length;
+mod backward_difference;
 mod diagnostics;
-mod implicit_euler;
 mod linear;
 mod linear_static;
 mod load_pattern;
+mod newmark;
 mod offset_surface;
 mod quasi_static;
 mod report;
 mod rest_directors;
+mod stable_step;
+mod state;
 mod system;
 
 pub use arc_length::{ArcLength, ArcLengthOptions, PathPoint};
+pub use backward_difference::{Bdf2, ImplicitEuler};
 pub use diagnostics::{Diagnostics, LargestForce};
-pub use implicit_euler::ImplicitEuler;
 pub use linear::{BucklingMode, LinearError, VibrationMode};
 pub use linear_static::LinearStatic;
 pub use load_pattern::LoadPattern;
+pub use newmark::Newmark;
 pub use offset_surface::OffsetSurfaces;
 pub use quasi_static::QuasiStatic;
 pub use report::{StepError, StepReport};
 pub use rest_directors::{relax_directors, relax_edge_points};
-pub use system::{Prescribed, ShellPart, State, System};
+pub use state::{Memory, State};
+pub use system::{Prescribed, ShellPart, System};
 
 /// Advances a state.
 pub trait Integrator: Send {
+    /// Called before a step while loads, clamps and what is held are still as at its start: for what a method has to know
+    /// of that state and does not remember.
+    ///
+    /// # Errors
+    /// See [`StepError`].
+    fn begin(
+        &mut self,
+        _system: &mut System,
+        _state: &mut State,
+        _is_fixed: &[bool],
+    ) -> Result<(), StepError> {
+        Ok(())
+    }
+
     /// One step of size `dt` [s] towards the prescribed values at its end.
     ///
     /// # Errors

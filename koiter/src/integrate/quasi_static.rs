@@ -28,19 +28,12 @@ impl Integrator for QuasiStatic {
                 self.displacement_tolerance,
             )
             .map_err(|error| (step, error))?;
-        let velocities = vec![0.0; q.len()];
         let report = StepReport {
             dt,
             residual: solved.newton.last_step,
             ..Default::default()
         };
-        let next = State {
-            q,
-            velocities,
-            time: state.time + dt,
-            step,
-            path: None,
-        };
+        let next = State::at_rest(q, state.time + dt, step);
         system.finish(state, next, solved, report)
     }
 }

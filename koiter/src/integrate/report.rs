@@ -35,6 +35,10 @@ pub struct StepReport {
     pub load_factor: Option<f64>,
     /// Arc length: negative eigenvalues of the tangent; the equilibrium is stable if there are none.
     pub negative_eigenvalues: Option<usize>,
+    /// Parts the step was taken in, one after the other: 1 unless it failed as a whole, or the last step had been cut.
+    pub parts: usize,
+    /// Why the step was cut the first time, if it was.
+    pub cut: Option<String>,
     /// For a step that did not converge: which energy and elements resist, what limited the step, what to try.
     pub diagnosis: Option<String>,
     /// Why it took the work it took.
@@ -75,6 +79,8 @@ impl StepReport {
             seconds: std::mem::take(&mut self.seconds),
             converged: self.converged && part.converged,
             energies,
+            parts: self.parts + 1,
+            cut: self.cut.take(),
             diagnosis: self.diagnosis.take().or(part.diagnosis),
             diagnostics: std::mem::take(&mut self.diagnostics).at_end_of(part.diagnostics),
             intersections: self.intersections + part.intersections,
@@ -114,6 +120,19 @@ pub enum StepError {
         load_factor: f64,
         /// What went wrong with the last arc, and what to try.
         reason: String,
+    },
+    /// An explicit step that is longer than the fastest vibration allows.
+    #[error(
+        "step {step}: an explicit step of {dt:.3e} s is not stable, the longest is about {stable_dt:.2e} s: make time.dt \
+         smaller, or take implicit steps with solver.newmark.beta = 0.25"
+    )]
+    Unstable {
+        /// Step number.
+        step: usize,
+        /// Its length [s].
+        dt: f64,
+        /// The longest stable step [s], estimated.
+        stable_dt: f64,
     },
     /// The accepted state has surfaces that intersect: a bug, never silent.
     #[error("surfaces intersect after step {step}: {details}")]

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::arc_length::PathPoint;
 use super::diagnostics::{Diagnostics, LargestForce};
 use super::offset_surface::OffsetSurfaces;
 use super::report::{StepError, StepReport};
+use super::state::State;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::contact::{Contact, Friction};
@@ -25,21 +25,6 @@ use crate::solve::{
     HessianChoice, LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError, minimize,
     minimize_stably,
 };
-
-/// Positions, edge angles and velocities at one time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct State {
-    /// All unknowns, and the positions of obstacles after them.
-    pub q: Vec<f64>,
-    /// Their rates.
-    pub velocities: Vec<f64>,
-    /// Time [s].
-    pub time: f64,
-    /// Steps taken.
-    pub step: usize,
-    /// Where the state stands on a path that is followed by arc length.
-    pub path: Option<PathPoint>,
-}
 
 /// What is prescribed at the end of a step.
 #[derive(Clone, Debug)]
@@ -180,6 +165,19 @@ pub(super) struct Solved {
     friction: Option<f64>,
 }
 
+impl Solved {
+    /// Of a step without a minimisation.
+    pub(super) fn nothing() -> Self {
+        Self {
+            newton: NewtonReport {
+                converged: true,
+                ..Default::default()
+            },
+            friction: None,
+        }
+    }
+}
+
 impl System {
     /// Minimises the sum of energies from `q`, with friction against the motion since `start`, and fills the report's
     /// common part.
@@ -314,6 +312,31 @@ impl System {
             add("contact", contact.value(&state.q));
         }
         energies
+    }
+
+    /// ∇Φ of all energies at `q`, what the forces add up to with the sign changed; contact is brought up to date.
+    pub(super) fn total_gradient(&mut self, q: &[f64]) -> Result<Vec<f64>, SolveError> {
+        if let Some(contact) = &mut self.contact {
+            contact.prepare(q);
+            contact.refresh(q);
+        }
+        let mut energies: Vec<&dyn Energy> = self.elastic.iter().map(AsRef::as_ref).collect();
+        energies.extend([&self.clamps as &dyn Energy, &self.symmetry]);
+        energies.extend([&self.gravity as &dyn Energy, &self.loads]);
+        energies.extend(self.contact.iter().map(|contact| contact as &dyn Energy));
+        let mut gradient = vec![0.0; q.len()];
+        for energy in &energies {
+            energy.add_gradient(q, &mut gradient);
+            let is_defined = energy.is_admissible(q);
+            if !is_defined || gradient.iter().any(|g| !g.is_finite()) {
+                let worst = energy.worst_element(q);
+                return Err(SolveError::NotFinite {
+                    energy: energy.name().into(),
+                    element: worst.map_or("an unknown place".into(), |w| w.description),
+                });
+            }
+        }
+        Ok(gradient)
     }
 
     /// Checks the new state, adopts it, and completes the report.

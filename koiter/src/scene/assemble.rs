@@ -5,7 +5,7 @@ use super::clamps::Clamps;
 use super::composition::CompositionError;
 use super::elastic::{Elastic, rest_surface};
 use super::loads::loads;
-use super::model::{Model, Obstacle, ObstacleShape, Shell};
+use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
 use super::symmetry::symmetry_edges;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout};
@@ -96,6 +96,18 @@ pub enum BuildError {
     /// Friction with a body that there is not.
     #[error(transparent)]
     Friction(#[from] UnknownBody),
+    /// Explicit steps and contact.
+    #[error(
+        "explicit steps (solver.newmark.beta = 0) know no contact, which needs a line search: set contact.enabled = false, \
+         or take implicit steps with beta = 0.25"
+    )]
+    ExplicitContact,
+    /// Explicit steps and unknowns without mass.
+    #[error(
+        "explicit steps (solver.newmark.beta = 0) need masses, but the bending models of this scene have unknowns without: \
+         take implicit steps with beta = 0.25"
+    )]
+    ExplicitWithoutMass,
     /// Something touches or intersects at the start.
     #[error(transparent)]
     Start(#[from] StartError),
@@ -139,6 +151,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     };
     check_contact_reach(model)?;
     check_planes(model)?;
+    check_explicit(model, &masses)?;
     let Unknowns {
         layout,
         vertices,
@@ -337,6 +350,18 @@ fn check_planes(model: &Model) -> Result<(), BuildError> {
             obstacle: obstacle.name.clone(),
         }),
         None => Ok(()),
+    }
+}
+
+/// Refuses explicit steps where they cannot be taken.
+fn check_explicit(model: &Model, masses: &[f64]) -> Result<(), BuildError> {
+    let mut phases = model.all_phases().into_iter();
+    let is_explicit = model.solver.newmark.is_explicit()
+        && phases.any(|phase| phase.integrator == IntegratorKind::Newmark);
+    match is_explicit {
+        true if model.contact.enabled => Err(BuildError::ExplicitContact),
+        true if masses.contains(&0.0) => Err(BuildError::ExplicitWithoutMass),
+        _ => Ok(()),
     }
 }
 

@@ -149,6 +149,8 @@ impl Builder<'_> {
                     .unwrap_or(solver.displacement_tolerance),
                 max_iterations: spec.solver.max_iterations.unwrap_or(solver.max_iterations),
                 smallest_step: spec.solver.smallest_step.unwrap_or(solver.smallest_step),
+                newmark: (spec.solver.newmark.as_ref())
+                    .map_or(solver.newmark, |newmark| newmark.resolve()),
                 first_arc_length: spec.solver.first_arc_length,
                 largest_arc_length: spec.solver.largest_arc_length,
                 last_load_factor: (spec.solver.last_load_factor).unwrap_or(solver.last_load_factor),

@@ -14,6 +14,7 @@ use crate::mesh::{EdgeId, FaceId};
 const STIFFNESS: f64 = 1e4;
 
 /// Where a clamped edge came from.
+#[derive(Clone)]
 struct Source {
     constraint: usize,
     /// A face that sees the edge, and its corner there.
@@ -39,6 +40,7 @@ fn edge_and_director(part: &ShellPart, face: usize, corner: usize, q: &[f64]) ->
 }
 
 /// The point of an edge between clamped vertices: it moves with them.
+#[derive(Clone)]
 pub(super) struct HeldPoint {
     /// The point.
     pub(super) dof: Dof,
@@ -73,6 +75,7 @@ impl HeldPoint {
 }
 
 /// All clamped edges and vertices of a scene.
+#[derive(Clone)]
 pub(super) struct Clamps {
     sources: Vec<Source>,
     /// Directors of clamped vertices.

@@ -20,6 +20,7 @@ pub struct Anchor {
 }
 
 /// The constraints of a model in time.
+#[derive(Clone)]
 pub(super) struct Holds {
     pub(super) clamps: Clamps,
     starts: Vec<Start>,
@@ -28,6 +29,7 @@ pub(super) struct Holds {
 }
 
 /// The vertices of a constraint when it began.
+#[derive(Clone)]
 struct Start {
     /// When [s]; `None`: it was there from the start.
     since: Option<f64>,

@@ -317,8 +317,10 @@ pub struct SolverOptions {
     pub displacement_tolerance: f64,
     /// Largest number of Newton iterations a step.
     pub max_iterations: usize,
-    /// Statics: a step that does not converge is cut in half until its parts are this share of it; 1: never.
+    /// A step that fails is cut in half until its parts are this share of it; 1: never.
     pub smallest_step: f64,
+    /// Newmark dynamics.
+    pub newmark: NewmarkOptions,
     /// Arc length: root mean square displacement of the first step [m]; `None`: a tenth of the smallest thickness.
     pub first_arc_length: Option<f64>,
     /// Arc length: largest root mean square displacement of a step [m]; `None`: ten times the first.
@@ -334,10 +336,36 @@ impl Default for SolverOptions {
             displacement_tolerance: 1e-7,
             max_iterations: 200,
             smallest_step: 1.0 / 64.0,
+            newmark: NewmarkOptions::default(),
             first_arc_length: None,
             largest_arc_length: None,
             last_load_factor: 1.0,
         }
+    }
+}
+
+/// The two numbers of Newmark's method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewmarkOptions {
+    /// β: 0 for explicit steps, else from γ/2 on, where every step is stable.
+    pub beta: f64,
+    /// γ, from 1/2 to 1: more than 1/2 damps, in first order.
+    pub gamma: f64,
+}
+
+impl Default for NewmarkOptions {
+    fn default() -> Self {
+        Self {
+            beta: 0.25,
+            gamma: 0.5,
+        }
+    }
+}
+
+impl NewmarkOptions {
+    /// Whether steps take no more than the forces at their start.
+    pub fn is_explicit(&self) -> bool {
+        self.beta == 0.0
     }
 }
 
@@ -350,9 +378,14 @@ impl Default for SolverOptions {
 )]
 #[non_exhaustive]
 pub enum IntegratorKind {
-    /// Implicit Euler dynamics.
+    /// Implicit Euler dynamics: it damps what moves fast.
     #[default]
     ImplicitEuler,
+    /// Dynamics by backward differences of second order: it damps little but what moves within a few steps.
+    Bdf2,
+    /// Newmark dynamics, undamped and of second order by default: it gains energy where steps are long for a stiff membrane
+    /// or for contact, unless `solver.newmark.gamma` damps it. Explicit with `solver.newmark.beta = 0`.
+    Newmark,
     /// A sequence of static equilibria along the schedules; one step is one static solve.
     QuasiStatic,
     /// Small displacements: each step is the response of the structure as it is at the start of the step.
@@ -366,7 +399,7 @@ impl IntegratorKind {
     /// Whether there is motion, with inertia and kinetic energy; else every step ends at rest.
     pub fn is_dynamic(self) -> bool {
         match self {
-            Self::ImplicitEuler => true,
+            Self::ImplicitEuler | Self::Bdf2 | Self::Newmark => true,
             Self::QuasiStatic | Self::LinearStatic | Self::ArcLength => false,
         }
     }

@@ -12,8 +12,8 @@ use crate::Vec3;
 use crate::assembly::{Assembled, Dof, Energy};
 use crate::energy::bending::ExtraUnknowns;
 use crate::integrate::{
-    ImplicitEuler, Integrator, LinearStatic, LoadPattern, Prescribed, QuasiStatic, ShellPart,
-    State, StepError, StepReport, System,
+    Bdf2, ImplicitEuler, Integrator, LinearStatic, LoadPattern, Memory, Newmark, Prescribed,
+    QuasiStatic, ShellPart, State, StepError, StepReport, System,
 };
 
 /// A model with its state, advanced step by step.
@@ -29,9 +29,7 @@ pub struct Simulation {
     obstacles: Vec<(Dof, Vec<Vec3>)>,
     pub(super) holds: Holds,
     parts: Vec<PartTopology>,
-    /// Mass times acceleration of the last step [N]; zero in statics.
-    pub(super) momentum_rates: Vec<f64>,
-    /// The share of a static step that is tried first.
+    /// The share of a step that is tried first.
     pub(super) share: f64,
     /// What the load factor of arc length multiplies.
     pub(super) load_pattern: Option<LoadPattern>,
@@ -94,13 +92,9 @@ impl Simulation {
         let parts = tessellate(&model);
         let holds = Holds::new(&model, clamps);
         let state = State {
-            q,
             velocities,
-            time: 0.0,
-            step: 0,
-            path: None,
+            ..State::at_rest(q, 0.0, 0)
         };
-        let momentum_rates = vec![0.0; system.masses.len()];
         Ok(Self {
             model,
             system,
@@ -111,7 +105,6 @@ impl Simulation {
             obstacles,
             holds,
             parts,
-            momentum_rates,
             share: 1.0,
             load_pattern,
         })
@@ -132,16 +125,24 @@ impl Simulation {
     fn step_in_pool(&mut self, dt: f64) -> Result<StepReport, StepError> {
         self.enter_phase(self.state.step + 1);
         match self.phase().integrator {
-            IntegratorKind::QuasiStatic => self.step_in_parts(dt),
+            IntegratorKind::LinearStatic | IntegratorKind::ArcLength => {
+                let report = self.step_to(self.state.time + dt, dt)?;
+                Ok(StepReport { parts: 1, ..report })
+            }
             IntegratorKind::ImplicitEuler
-            | IntegratorKind::LinearStatic
-            | IntegratorKind::ArcLength => self.step_to(self.state.time + dt, dt),
+            | IntegratorKind::Bdf2
+            | IntegratorKind::Newmark
+            | IntegratorKind::QuasiStatic => self.step_in_parts(dt),
         }
     }
 
     /// The phase that a step with this number, from 1, belongs to is that of the coming or last step.
     pub(super) fn enter_phase(&mut self, step: usize) {
-        self.phase = phase_of_step(&self.phases, step);
+        let phase = phase_of_step(&self.phases, step);
+        if phase != self.phase {
+            // Steps of another size or kind have not failed yet.
+            (self.phase, self.share) = (phase, 1.0);
+        }
         self.system.is_dynamic = self.phase().integrator.is_dynamic();
     }
 
@@ -151,31 +152,31 @@ impl Simulation {
 
     /// One step of the integrator, to the time `time` [s], `dt` [s] from now.
     pub(super) fn step_to(&mut self, time: f64, dt: f64) -> Result<StepReport, StepError> {
+        self.begin_step()?;
         let parts = &self.system.space.shells;
         let window = [self.state.time, time];
         let phase = &self.phases[self.phase];
         (self.holds).switch(&self.model, phase, parts, &self.state.q, window);
         self.apply_schedules(time);
         let prescribed = self.prescribed_at(time);
-        let before = self.state.velocities.clone();
         let integrator = &mut self.integrators[self.phase];
         let result = integrator.step(&mut self.system, &mut self.state, &prescribed, dt);
         if result.is_err() {
             self.apply_schedules(self.state.time);
         }
-        let report = result?;
-        self.momentum_rates = match self.system.is_dynamic {
-            true => {
-                let changes = self.state.velocities.iter().zip(&before);
-                let masses = self.system.masses.iter();
-                masses
-                    .zip(changes)
-                    .map(|(m, (new, old))| m * ((new - old) / dt))
-                    .collect()
-            }
-            false => vec![0.0; self.system.masses.len()],
-        };
-        Ok(report)
+        result
+    }
+
+    /// Lets the integrator look at the start of a step before schedules move on.
+    fn begin_step(&mut self) -> Result<(), StepError> {
+        let knows = matches!(self.state.memory, Memory::Accelerated { .. });
+        if knows || self.phase().integrator != IntegratorKind::Newmark {
+            return Ok(());
+        }
+        self.apply_schedules(self.state.time);
+        let is_fixed = self.prescribed_at(self.state.time).is_fixed;
+        let integrator = &mut self.integrators[self.phase];
+        integrator.begin(&mut self.system, &mut self.state, &is_fixed)
     }
 
     /// Gravity, loads and clamps as they are at a time [s].
@@ -301,7 +302,8 @@ impl Simulation {
         for vertex in &constraint.vertices {
             for axis in (0..3).filter(|&axis| constraint.axes[axis]) {
                 let dof = first + 3 * vertex.0 as usize + axis;
-                force[axis] += gradient[dof] + self.momentum_rates[dof];
+                let inertia = self.system.masses[dof] * self.state.accelerations[dof];
+                force[axis] += gradient[dof] + inertia;
                 held[dof] = true;
             }
         }
@@ -405,13 +407,20 @@ impl Simulation {
     }
 }
 
+/// An integrator with the options of a model.
 fn integrator(model: &Model, kind: IntegratorKind) -> Result<Box<dyn Integrator>, BuildError> {
+    let solver = &model.solver;
+    let velocity_tolerance = solver.velocity_tolerance;
     Ok(match kind {
-        IntegratorKind::ImplicitEuler => Box::new(ImplicitEuler {
-            velocity_tolerance: model.solver.velocity_tolerance,
+        IntegratorKind::ImplicitEuler => Box::new(ImplicitEuler { velocity_tolerance }),
+        IntegratorKind::Bdf2 => Box::new(Bdf2 { velocity_tolerance }),
+        IntegratorKind::Newmark => Box::new(Newmark {
+            beta: solver.newmark.beta,
+            gamma: solver.newmark.gamma,
+            velocity_tolerance,
         }),
         IntegratorKind::QuasiStatic => Box::new(QuasiStatic {
-            displacement_tolerance: model.solver.displacement_tolerance,
+            displacement_tolerance: solver.displacement_tolerance,
         }),
         IntegratorKind::LinearStatic => Box::new(LinearStatic),
         IntegratorKind::ArcLength => Box::new(arc_length::integrator(model)?),

@@ -3,22 +3,20 @@
 use super::holds::Anchor;
 use super::simulation::Simulation;
 use crate::assembly::Energy;
-use crate::integrate::{PathPoint, State};
+use crate::integrate::{Memory, PathPoint, State};
 use crate::solve::{LinearWorkspace, WorkspaceHistory};
 
 /// Everything of a simulation that its model does not say: a new simulation of the same model, restored from it, takes
 /// the same steps as the old one, bit for bit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot {
-    /// Positions, edge angles, their rates, time, number of steps, place on a path of loads.
+    /// Positions, edge angles, their rates, time, number of steps, place on a path of loads, what the integrator keeps.
     pub state: State,
-    /// Mass times acceleration of the last step [N], for reactions.
-    pub momentum_rates: Vec<f64>,
     /// Barrier stiffness [J/m²], which grows where gaps shrink; `None` where contact is off.
     pub kappa: Option<f64>,
     /// How far the directors of edges under moments have turned [rad], in the order of loads and edges.
     pub turned: Vec<f64>,
-    /// The share of a static step that is tried first.
+    /// The share of a step that is tried first.
     pub share: f64,
     /// Where constraints that began during the run and still act took over.
     pub anchors: Vec<Anchor>,
@@ -39,7 +37,6 @@ impl Simulation {
     pub fn snapshot(&self) -> Snapshot {
         Snapshot {
             state: self.state.clone(),
-            momentum_rates: self.momentum_rates.clone(),
             kappa: self.system.contact.as_ref().map(|contact| contact.kappa()),
             turned: self.system.loads.turned(),
             share: self.share,
@@ -58,10 +55,9 @@ impl Simulation {
         self.system.workspace =
             LinearWorkspace::with_history(&snapshot.solver, &self.system.layout).map_err(refuse)?;
         self.state = snapshot.state.clone();
-        self.momentum_rates = snapshot.momentum_rates.clone();
-        self.share = snapshot.share;
         (self.system.loads).restore_turned(&snapshot.turned, &self.state.q);
         self.enter_phase(self.state.step.max(1));
+        self.share = snapshot.share;
         let (phase, parts) = (self.phase().clone(), &self.system.space.shells);
         let (model, time) = (&self.model, self.state.time);
         (self.holds).restore(model, &phase, parts, time, &snapshot.anchors);
@@ -79,11 +75,7 @@ impl Simulation {
         for (what, values, expected) in [
             ("positions", &state.q, self.state.q.len()),
             ("velocities", &state.velocities, self.state.velocities.len()),
-            (
-                "forces",
-                &snapshot.momentum_rates,
-                self.momentum_rates.len(),
-            ),
+            ("accelerations", &state.accelerations, self.state.q.len()),
             (
                 "angles of moments",
                 &snapshot.turned,
@@ -104,6 +96,7 @@ impl Simulation {
             return Err(format!("its share of a step is {}", snapshot.share));
         }
         self.check_path(state.path.as_ref())?;
+        self.check_memory(&state.memory)?;
         (snapshot.anchors.iter()).try_for_each(|anchor| self.check_anchor(anchor))?;
         match (&self.system.contact, snapshot.kappa) {
             (None, None) => Ok(()),
@@ -129,6 +122,25 @@ impl Simulation {
                 Err("a constraint began at positions that are not finite".into())
             }
             () => Ok(()),
+        }
+    }
+
+    /// Every integrator keeps something else, or nothing.
+    fn check_memory(&self, memory: &Memory) -> Result<(), String> {
+        let sound = |dt: f64| dt > 0.0;
+        let fits = |values: &[f64]| {
+            values.len() == self.state.q.len() && values.iter().all(|value| value.is_finite())
+        };
+        let is_whole = match memory {
+            Memory::None => true,
+            Memory::Before { dt, q, velocities } => {
+                sound(*dt) && dt.is_finite() && fits(q) && fits(velocities)
+            }
+            Memory::Accelerated { stable_dt, .. } => sound(*stable_dt),
+        };
+        match is_whole {
+            true => Ok(()),
+            false => Err("what its integrator kept of the last step is not whole".into()),
         }
     }
 

@@ -23,6 +23,7 @@ mod constraint;
 mod contact;
 mod load;
 mod material;
+mod newmark;
 mod obstacle;
 mod phase;
 mod shape;
@@ -34,6 +35,7 @@ pub use constraint::{BoundsSpec, ConstraintSpec, SelectSpec};
 pub use contact::{ContactSpec, PairSpec};
 pub use load::{EdgeChoice, LoadSpec};
 pub use material::{LayerSpec, MaterialSpec};
+pub use newmark::NewmarkSpec;
 pub use obstacle::{DeformSpec, ObstacleSpec};
 pub use phase::PhaseSpec;
 pub use shape::{
@@ -209,9 +211,12 @@ pub struct SolverSpec {
     /// Largest number of Newton iterations a step.
     #[serde(default)]
     pub max_iterations: Option<usize>,
-    /// Statics: a step that does not converge is cut in half until its parts are this share of it; 1: never.
+    /// A step that fails is cut in half until its parts are this share of it; 1: never.
     #[serde(default)]
     pub smallest_step: Option<f64>,
+    /// The numbers of Newmark's method.
+    #[serde(default)]
+    pub newmark: Option<NewmarkSpec>,
     /// Arc length: root mean square displacement of the first step [m]; default: a tenth of the smallest thickness.
     #[serde(default)]
     pub first_arc_length: Option<f64>,

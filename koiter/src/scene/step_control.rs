@@ -1,21 +1,35 @@
-//! Static steps in parts: a step that does not converge is cut in half, one that converges quickly grows again.
+//! Steps in parts: a step that fails is cut in half, one that converges quickly grows again.
 //!
-//! A step of the schedules stays one step in all that is written; only the way to its end has more equilibria on it. The
-//! share of a step that is tried first is that at which the last step ended.
+//! A step of the schedules stays one step in all that is written; only the way to its end has more states on it. The
+//! share of a step that is tried first is that at which the last step ended. A failure is an iteration that does not
+//! converge, or an energy or a linear system that breaks down; surfaces that intersect are an error of the program, and an
+//! explicit step that is not stable is one of the scene: neither is tried again.
 
+use super::holds::Holds;
 use super::simulation::Simulation;
-use crate::integrate::{StepError, StepReport};
+use crate::integrate::{State, StepError, StepReport};
 
-/// A part that took at most this share of the iterations that are allowed is followed by one twice as long.
+/// A part that took at most this share of the iterations that are allowed is followed by one twice as long …
 const QUICK: f64 = 0.125;
+
+/// … and so is one that took no more than these: Newton's method is hardly ever quicker.
+const FEWEST: usize = 4;
+
+/// What a step changes, before it.
+struct Before {
+    state: State,
+    turned: Vec<f64>,
+    holds: Holds,
+    kappa: Option<f64>,
+}
 
 impl Simulation {
     /// Advances by `dt` [s], in as many parts as are needed to converge.
     pub(super) fn step_in_parts(&mut self, dt: f64) -> Result<StepReport, StepError> {
-        let start = self.state.clone();
-        let turned = self.system.loads.turned();
+        let start = self.before();
         let smallest = self.model().solver.smallest_step;
-        let quick = (QUICK * self.model().solver.max_iterations as f64) as usize;
+        let allowed = self.model().solver.max_iterations as f64;
+        let quick = ((QUICK * allowed) as usize).max(FEWEST);
         let mut whole = StepReport {
             converged: true,
             ..StepReport::default()
@@ -25,20 +39,19 @@ impl Simulation {
         while done < 1.0 {
             let share = self.share.min(1.0 - done);
             let is_last = done + share >= 1.0;
-            let end = start.time + if is_last { dt } else { dt * (done + share) };
-            let (before, turned_before) = (self.state.clone(), self.system.loads.turned());
+            let since_start = if is_last { dt } else { dt * (done + share) };
+            let before = self.before();
             let part_dt = if share == 1.0 { dt } else { dt * share };
-            match self.step_to(end, part_dt) {
+            let may_cut = can_cut && share > smallest;
+            match self.step_to(start.state.time + since_start, part_dt) {
+                Ok(part) if !part.converged && may_cut => {
+                    whole.add_effort(&part);
+                    whole.cut = whole.cut.take().or(part.diagnosis);
+                    self.go_back(&before);
+                    self.share = 0.5 * share;
+                }
                 Ok(part) => {
-                    let converged = part.converged;
-                    let iterations = part.newton_iterations;
-                    if !converged && can_cut && share > smallest {
-                        whole.add_effort(&part);
-                        self.state = before;
-                        (self.system.loads).restore_turned(&turned_before, &self.state.q);
-                        self.share = 0.5 * share;
-                        continue;
-                    }
+                    let (converged, iterations) = (part.converged, part.newton_iterations);
                     whole.add_part(part);
                     done += share;
                     if !converged {
@@ -48,25 +61,50 @@ impl Simulation {
                         self.share = (2.0 * self.share).min(1.0);
                     }
                 }
-                Err(error)
-                    if !can_cut
-                        || share <= smallest
-                        || matches!(error, StepError::Intersection { .. }) =>
-                {
-                    self.state = start;
-                    (self.system.loads).restore_turned(&turned, &self.state.q);
-                    self.apply_schedules(self.state.time);
+                Err(error) if may_cut && can_be_cured(&error) => {
+                    whole.cut = whole.cut.take().or_else(|| Some(error.to_string()));
+                    self.go_back(&before);
+                    self.share = 0.5 * share;
+                }
+                Err(error) => {
+                    self.go_back(&start);
                     return Err(error);
                 }
-                Err(_) => self.share = 0.5 * share,
             }
         }
         if !whole.converged {
             self.share = smallest;
         }
-        self.state.step = start.step + 1;
-        self.state.time = start.time + dt;
+        self.state.step = start.state.step + 1;
+        self.state.time = start.state.time + dt;
         (whole.step, whole.time, whole.dt) = (self.state.step, self.state.time, dt);
         Ok(whole)
     }
+
+    fn before(&self) -> Before {
+        Before {
+            state: self.state.clone(),
+            turned: self.system.loads.turned(),
+            holds: self.holds.clone(),
+            kappa: self.system.contact.as_ref().map(|contact| contact.kappa()),
+        }
+    }
+
+    fn go_back(&mut self, before: &Before) {
+        self.state = before.state.clone();
+        (self.system.loads).restore_turned(&before.turned, &self.state.q);
+        self.holds = before.holds.clone();
+        self.apply_schedules(self.state.time);
+        if let (Some(contact), Some(kappa)) = (&mut self.system.contact, before.kappa) {
+            contact.set_kappa(kappa);
+        }
+    }
+}
+
+/// Whether a shorter step may do what this one could not.
+fn can_be_cured(error: &StepError) -> bool {
+    !matches!(
+        error,
+        StepError::Intersection { .. } | StepError::Unstable { .. }
+    )
 }

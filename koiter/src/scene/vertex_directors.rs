@@ -82,6 +82,7 @@ fn add_inertia(shell: &Shell, part: &ShellPart, masses: &mut [f64]) {
 }
 
 /// The director of a clamped vertex: it keeps the direction it has when the clamp begins, turned with its motion.
+#[derive(Clone)]
 pub(super) struct HeldDirector {
     /// The director.
     pub(super) dof: Dof,

@@ -3,13 +3,15 @@
 //! ```text
 //! "KOITERCP"  u32 format  text version of Koiter  text scene
 //! list of bodies: text name, u64 fingerprint of the mesh
-//! u64 step  f64 time  list of f64: q, its rates, momentum rates
+//! u64 step  f64 time  list of f64: q, its rates, their rates
 //! u8 1 with contact, else 0  f64 barrier stiffness
 //! u8 1 on a path by arc length, else 0  f64 load factor  f64 arc length  list of f64: last increment
 //! list of f64: what the directors under moments have turned  f64 share of a step
+//! u8 0 nothing, 1 the state before the last step (BDF2): f64 its length  list of f64: q, its rates
+//!    2 accelerations of the equation of motion (Newmark): f64 longest stable step  u64 steps since it was estimated
 //! list of anchors: list of u64 constraints, f64 time, list of f64: q when they began
 //! list of u32 × 2: couplings by contacts  list of u32: elimination order  u64 factor entries when it was made
-//! u64 × 3 Newton iterations, steps not converged, intersections  f64 × 2 smallest gap, seconds
+//! u64 × 4 Newton iterations, steps not converged, steps in parts, intersections  f64 × 2 smallest gap, seconds
 //! list of parts of the run: text name, f64 seconds  list of f64: last values of the probes
 //! u32 CRC-32
 //! ```
@@ -21,14 +23,14 @@ use std::path::Path;
 use super::CHECKPOINT;
 use super::error::{ResultError, read_if_there};
 use super::topology_file::checked_body;
-use crate::integrate::{PathPoint, State};
+use crate::integrate::{Memory, PathPoint, State};
 use crate::io::bytes::{ByteReader, Endian};
 use crate::io::checksum::crc32;
 use crate::scene::{Anchor, Snapshot};
 use crate::solve::WorkspaceHistory;
 
 const MAGIC: &[u8; 8] = b"KOITERCP";
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 
 /// All that is needed to go on with a run to the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +54,8 @@ pub struct Totals {
     pub newton_iterations: u64,
     /// Steps that did not converge.
     pub unconverged: u64,
+    /// Steps that were taken in parts.
+    pub in_parts: u64,
     /// Intersections found.
     pub intersections: u64,
     /// Smallest gap between surfaces [m]; infinity when nothing was near.
@@ -69,6 +73,7 @@ impl Default for Totals {
         Self {
             newton_iterations: 0,
             unconverged: 0,
+            in_parts: 0,
             intersections: 0,
             min_gap: f64::INFINITY,
             seconds: 0.0,
@@ -137,12 +142,13 @@ impl Checkpoint {
         out.f64(snapshot.state.time);
         out.numbers(&snapshot.state.q);
         out.numbers(&snapshot.state.velocities);
-        out.numbers(&snapshot.momentum_rates);
+        out.numbers(&snapshot.state.accelerations);
         out.0.push(snapshot.kappa.is_some().into());
         out.f64(snapshot.kappa.unwrap_or(0.0));
         out.path(snapshot.state.path.as_ref());
         out.numbers(&snapshot.turned);
         out.f64(snapshot.share);
+        out.memory(&snapshot.state.memory);
         out.list(&snapshot.anchors, |out, anchor| {
             out.list(&anchor.constraints, |out, index| out.u64(*index as u64));
             out.f64(anchor.time);
@@ -161,6 +167,7 @@ impl Checkpoint {
         out.u64(*entries_at_ordering);
         out.u64(totals.newton_iterations);
         out.u64(totals.unconverged);
+        out.u64(totals.in_parts);
         out.u64(totals.intersections);
         out.f64(totals.min_gap);
         out.f64(totals.seconds);
@@ -204,6 +211,23 @@ impl Bytes {
         self.list(values, |out, value| out.f64(*value));
     }
 
+    fn memory(&mut self, memory: &Memory) {
+        match memory {
+            Memory::None => self.0.push(0),
+            Memory::Before { dt, q, velocities } => {
+                self.0.push(1);
+                self.f64(*dt);
+                self.numbers(q);
+                self.numbers(velocities);
+            }
+            Memory::Accelerated { stable_dt, age } => {
+                self.0.push(2);
+                self.f64(*stable_dt);
+                self.u64(*age);
+            }
+        }
+    }
+
     fn path(&mut self, point: Option<&PathPoint>) {
         self.0.push(point.is_some().into());
         self.f64(point.map_or(0.0, |point| point.load_factor));
@@ -221,16 +245,18 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
     let mut state = State {
         q: numbers(reader)?,
         velocities: numbers(reader)?,
+        accelerations: numbers(reader)?,
         time,
         step,
         path: None,
+        memory: Memory::None,
     };
-    let momentum_rates = numbers(reader)?;
     let has_contact = reader.u8()?;
     let kappa = reader.f64()?;
     state.path = path(reader)?;
     let turned = numbers(reader)?;
     let share = reader.f64()?;
+    state.memory = memory(reader)?;
     let anchors = list(reader, 24, anchor)?;
     let solver = WorkspaceHistory {
         changing_pairs: list(reader, 8, |reader| Some([reader.u32()?, reader.u32()?]))?,
@@ -240,6 +266,7 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
     let totals = Totals {
         newton_iterations: reader.u64()?,
         unconverged: reader.u64()?,
+        in_parts: reader.u64()?,
         intersections: reader.u64()?,
         min_gap: reader.f64()?,
         seconds: reader.f64()?,
@@ -248,7 +275,6 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
     };
     let snapshot = Snapshot {
         state,
-        momentum_rates,
         kappa: (has_contact == 1).then_some(kappa),
         turned,
         share,
@@ -284,6 +310,22 @@ fn list<'a, T>(
 
 fn numbers(reader: &mut ByteReader) -> Option<Vec<f64>> {
     list(reader, 8, ByteReader::f64)
+}
+
+fn memory(reader: &mut ByteReader) -> Option<Memory> {
+    match reader.u8()? {
+        0 => Some(Memory::None),
+        1 => Some(Memory::Before {
+            dt: reader.f64()?,
+            q: numbers(reader)?,
+            velocities: numbers(reader)?,
+        }),
+        2 => Some(Memory::Accelerated {
+            stable_dt: reader.f64()?,
+            age: reader.u64()?,
+        }),
+        _ => None,
+    }
 }
 
 fn anchor(reader: &mut ByteReader) -> Option<Anchor> {

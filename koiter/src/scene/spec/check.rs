@@ -13,6 +13,7 @@ use self::motion::{check_motion, check_schedule};
 use self::obstacle::check_obstacle;
 pub use self::phases::MAX_STEPS;
 use super::material::check_material;
+use super::newmark::check_newmark;
 use super::strain_limit::check_strain_limit;
 use super::{
     ConstraintSpec, ENERGY_NAMES, FIELD_NAMES, MeshSpec, ProbeQuantity, ProbeSpec, RestSpec,
@@ -80,6 +81,7 @@ pub(super) fn check(spec: &SceneSpec) -> Checked {
         check_probe(&format!("probe.{}", probe.name), probe, spec)?;
     }
     check_contact_and_solver(spec)?;
+    check_newmark(spec)?;
     check_output(spec)
 }
 

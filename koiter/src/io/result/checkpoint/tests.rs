@@ -9,6 +9,7 @@ fn checkpoint() -> Checkpoint {
             state: State {
                 q: vec![0.1, -1e-300, 3.0],
                 velocities: vec![0.0, -0.0, f64::MIN_POSITIVE],
+                accelerations: vec![1.5, 0.0, -2.0],
                 time: 1.0 / 3.0,
                 step: 12,
                 path: Some(PathPoint {
@@ -16,8 +17,12 @@ fn checkpoint() -> Checkpoint {
                     arc_length: 1e-3,
                     increment: vec![0.25, 0.0, -1.0],
                 }),
+                memory: Memory::Before {
+                    dt: 0.01,
+                    q: vec![0.5],
+                    velocities: vec![-0.5, 2.0],
+                },
             },
-            momentum_rates: vec![1.5],
             kappa: Some(1e5),
             turned: vec![7.5],
             share: 0.25,
@@ -50,10 +55,17 @@ fn what_was_written_is_read_back() {
     );
     written.snapshot.kappa = None;
     written.snapshot.state.path = None;
-    assert_eq!(
-        Checkpoint::from_bytes(&written.to_bytes()).unwrap(),
-        written
-    );
+    let accelerated = Memory::Accelerated {
+        stable_dt: f64::INFINITY,
+        age: 7,
+    };
+    for memory in [Memory::None, accelerated] {
+        written.snapshot.state.memory = memory;
+        assert_eq!(
+            Checkpoint::from_bytes(&written.to_bytes()).unwrap(),
+            written
+        );
+    }
 }
 
 #[test]

@@ -1,0 +1,61 @@
+//! Where a system stands, and what the next step has to know of those before.
+
+use super::arc_length::PathPoint;
+
+/// Positions, edge angles, their rates, and what an integrator remembers, at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// All unknowns, and the positions of obstacles after them.
+    pub q: Vec<f64>,
+    /// Their rates.
+    pub velocities: Vec<f64>,
+    /// Rates of the velocities over the last step, as its integrator has them; zero in statics.
+    pub accelerations: Vec<f64>,
+    /// Time [s].
+    pub time: f64,
+    /// Steps taken.
+    pub step: usize,
+    /// Where the state stands on a path that is followed by arc length.
+    pub path: Option<PathPoint>,
+    /// What the integrator keeps of the last step.
+    pub memory: Memory,
+}
+
+/// What an integrator keeps between steps. Each finds its own, or begins anew.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Memory {
+    /// Nothing.
+    #[default]
+    None,
+    /// BDF2: the state before the last step.
+    Before {
+        /// Length of the last step [s].
+        dt: f64,
+        /// Unknowns.
+        q: Vec<f64>,
+        /// Their rates.
+        velocities: Vec<f64>,
+    },
+    /// Newmark: the accelerations of the state are those of the equation of motion.
+    Accelerated {
+        /// Explicit steps: the longest that was found stable [s]; infinite for implicit ones.
+        stable_dt: f64,
+        /// Explicit steps since that was found.
+        age: u64,
+    },
+}
+
+impl State {
+    /// A configuration at rest.
+    pub(crate) fn at_rest(q: Vec<f64>, time: f64, step: usize) -> Self {
+        Self {
+            velocities: vec![0.0; q.len()],
+            accelerations: vec![0.0; q.len()],
+            q,
+            time,
+            step,
+            path: None,
+            memory: Memory::None,
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! `solver.newmark`, and its ranges.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::SceneSpec;
+use super::check::{Checked, error};
+use crate::scene::error::SceneErrorKind as Kind;
+use crate::scene::model::{IntegratorKind, NewmarkOptions};
+
+/// The two numbers of Newmark's method.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewmarkSpec {
+    /// 0: explicit steps, without contact, refused where they are longer than the fastest vibration allows; else from
+    /// gamma/2 to 1, stable for all steps of linear problems; default: 0.25.
+    #[serde(default)]
+    pub beta: Option<f64>,
+    /// From 0.5 to 1: 0.5 damps nothing, more damps what moves fast; default: 0.5.
+    #[serde(default)]
+    pub gamma: Option<f64>,
+}
+
+impl NewmarkSpec {
+    /// The numbers with their defaults filled in.
+    pub(in crate::scene) fn resolve(&self) -> NewmarkOptions {
+        let default = NewmarkOptions::default();
+        NewmarkOptions {
+            beta: self.beta.unwrap_or(default.beta),
+            gamma: self.gamma.unwrap_or(default.gamma),
+        }
+    }
+}
+
+/// Checks `solver.newmark` of a scene.
+pub(super) fn check_newmark(spec: &SceneSpec) -> Checked {
+    let Some(newmark) = &spec.solver.newmark else {
+        return Ok(());
+    };
+    let refuse = |kind, key: &str, message: String, help: &str| {
+        let path = format!("solver.newmark{key}");
+        Err(error(kind, &path, message).with_help(help))
+    };
+    let of_phases = spec.phase.iter().filter_map(|phase| phase.integrator);
+    let mut integrators = of_phases.chain([spec.integrator]);
+    if integrators.all(|integrator| integrator != IntegratorKind::Newmark) {
+        let message = "only the integrator \"newmark\" has these numbers".to_owned();
+        let help = "write integrator = \"newmark\", or leave solver.newmark out";
+        return refuse(Kind::Conflict, "", message, help);
+    }
+    let NewmarkOptions { beta, gamma } = newmark.resolve();
+    if !(0.5..=1.0).contains(&gamma) {
+        let message = format!("gamma must lie between 0.5 and 1, but it is {gamma}");
+        let help = "0.5 damps nothing; less gains energy without bound";
+        return refuse(Kind::OutOfRange, ".gamma", message, help);
+    }
+    if beta != 0.0 && !(0.5 * gamma..=1.0).contains(&beta) {
+        let message = format!(
+            "beta must be 0, for explicit steps, or lie between gamma/2 = {} and 1, but it is {beta}",
+            0.5 * gamma
+        );
+        let help = "between 0 and gamma/2 steps are implicit and yet not stable";
+        return refuse(Kind::OutOfRange, ".beta", message, help);
+    }
+    if beta == 0.0 && spec.contact.enabled {
+        let message = "explicit steps (beta = 0) know no contact".to_owned();
+        let help = "set contact.enabled = false, or take implicit steps with beta = 0.25";
+        return refuse(Kind::Conflict, ".beta", message, help);
+    }
+    Ok(())
+}
