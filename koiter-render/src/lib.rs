@@ -56,7 +56,7 @@ mod surface;
 mod vector;
 
 pub use camera::{Camera, CameraParseError, CameraView};
-pub use chart::{Arrangement, Chart, Marker, Panel, Series, Style};
+pub use chart::{Arrangement, Chart, Line, Marker, Panel, Series, Style};
 pub use color::{ColorMap, ColorMapParseError, Rgb};
 pub use error::{FilmError, ImageError, RenderError};
 pub use film::Film;

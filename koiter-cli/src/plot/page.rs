@@ -105,8 +105,8 @@ impl Page<'_> {
             style,
             series,
             weight,
-            is_count: false,
             if_empty: "no figures".to_owned(),
+            ..Panel::default()
         };
         let single = |key: &str| vec![self.over_time(key, &|line| number(&line[key]))];
         let count = |name: &str, series| Panel {

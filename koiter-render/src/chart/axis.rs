@@ -128,9 +128,12 @@ pub(super) fn vertical_axis(panel: &Panel, pixels: (f64, f64)) -> Option<Axis> {
             .map(|point| point[1])
             .collect(),
     };
+    let has_points = panel.series.iter().any(|series| !series.points.is_empty());
+    let included = panel.include.iter().filter(|_| has_points);
     let is_log = panel.style == Style::LogLines;
     let values = sums
         .into_iter()
+        .chain(included.copied())
         .filter(|value| value.is_finite() && (!is_log || *value > 0.0));
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))

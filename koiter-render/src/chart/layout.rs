@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, vertical_axis};
 use super::reduce::{columns, pieces};
-use super::{Anchor, Arrangement, Chart, Mark, Panel, Series, Style};
+use super::{Anchor, Arrangement, Chart, Line, Mark, Marker, Panel, Series, Style};
 use crate::font::Typeface;
 
 /// Colours that colour-blind people can tell apart (Okabe and Ito, 2008), without the yellow, which is lost on white.
@@ -99,6 +99,14 @@ fn color(number: usize, series: &Series) -> [u8; 3] {
     series.color.unwrap_or(COLORS[number % COLORS.len()])
 }
 
+/// Size of signs and lines of the `k`-th of `count` curves: from 1.8 to 0.7, so that each is seen around the next.
+fn nested_scale(k: usize, count: usize) -> f64 {
+    match count {
+        0 | 1 => 1.0,
+        _ => 1.8 - 1.1 * k as f64 / (count - 1) as f64,
+    }
+}
+
 struct Frame {
     left: f64,
     right: f64,
@@ -154,33 +162,57 @@ impl Sheet {
         self.legend(panel, frame);
     }
 
+    /// Lines first, signs on top of them, both from large to small: where curves lie on each other all are seen.
     fn curves(&mut self, panel: &Panel, x: &Axis, y: &Axis) {
-        let width = 0.15 * self.size;
-        for (number, series) in panel.series.iter().enumerate() {
-            let color = color(number, series);
-            let place = |&[a, b]: &[f64; 2]| Some([x.pixel(a)?, y.pixel(b)?]);
-            if let Some(marker) = series.marker {
-                for at in series.points.iter().filter_map(place) {
-                    let points = marker.outline(at, MARKER * self.size);
-                    self.marks.push(Mark::Area { points, color });
-                }
+        let place = |&[a, b]: &[f64; 2]| Some([x.pixel(a)?, y.pixel(b)?]);
+        let signed = |series: &&Series| series.marker.is_some() && series.line == Line::Solid;
+        let num_signed = panel.series.iter().filter(signed).count();
+        let mut rank = 0;
+        let scale = |series: &Series| {
+            if !signed(&series) {
+                return 1.0;
             }
+            rank += 1;
+            nested_scale(rank - 1, num_signed)
+        };
+        let scales: Vec<f64> = panel.series.iter().map(scale).collect();
+        let numbered = || panel.series.iter().enumerate();
+        let guides = numbered().filter(|(_, series)| series.line == Line::Guide);
+        for (number, series) in guides.chain(numbered().filter(|(_, s)| s.line == Line::Solid)) {
+            let width = match series.line {
+                Line::Guide => 0.06 * self.size,
+                _ => 0.15 * self.size * scales[number],
+            };
             for piece in pieces(series.points.iter().map(place)) {
                 match piece[..] {
                     // A single point has no line: it becomes a square.
-                    [[a, b]] => {
-                        let r = 1.6 * width;
-                        let points = vec![
-                            [a - r, b - r],
-                            [a + r, b - r],
-                            [a + r, b + r],
-                            [a - r, b + r],
-                        ];
+                    [at] => {
+                        let points = Marker::Square.outline(at, 1.8 * width);
+                        let color = color(number, series);
                         self.marks.push(Mark::Area { points, color });
                     }
-                    _ => self.line(piece, width, color),
+                    _ => self.line(piece, width, color(number, series)),
                 }
             }
+        }
+        for (number, series) in numbered() {
+            let Some(marker) = series.marker else {
+                continue;
+            };
+            for at in series.points.iter().filter_map(place) {
+                let r = MARKER * self.size * scales[number];
+                self.sign(marker, at, r, color(number, series));
+            }
+        }
+    }
+
+    fn sign(&mut self, marker: Marker, at: [f64; 2], r: f64, color: [u8; 3]) {
+        let mut points = marker.outline(at, r);
+        if marker.is_hollow() {
+            points.push(points[0]);
+            self.line(points, 0.25 * r, color);
+        } else {
+            self.marks.push(Mark::Area { points, color });
         }
     }
 
@@ -265,11 +297,20 @@ impl Sheet {
                 [1.2 * size, half],
                 [0.0, half],
             ];
-            let points = match series.marker {
-                Some(marker) => marker.outline([left + 0.6 * size, middle], MARKER * size),
-                None => square.map(|[a, b]| [left + a, middle + b]).to_vec(),
-            };
-            self.marks.push(Mark::Area { points, color });
+            let at = |[a, b]: [f64; 2]| [left + a, middle + b];
+            match (series.marker, series.line) {
+                (Some(marker), _) => {
+                    self.sign(marker, at([0.6 * size, 0.0]), MARKER * size, color);
+                }
+                (None, Line::Guide) => {
+                    let ends = [[0.0, 0.0], [1.2 * size, 0.0]].map(at);
+                    self.line(ends.to_vec(), 0.06 * size, color);
+                }
+                (None, _) => {
+                    let points = square.map(at).to_vec();
+                    self.marks.push(Mark::Area { points, color });
+                }
+            }
             self.words(
                 name,
                 [left + 1.7 * size, middle + 0.36 * size],

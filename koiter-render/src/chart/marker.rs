@@ -17,9 +17,18 @@ pub enum Marker {
     Plus,
     /// ✖
     Cross,
+    /// ★
+    Star,
+    /// ○, large: what lies below is seen through it.
+    Ring,
 }
 
 impl Marker {
+    /// Whether the inside of the outline is left as it is.
+    pub(super) fn is_hollow(self) -> bool {
+        self == Self::Ring
+    }
+
     /// The outline about a point, of radius `r` [pixels].
     pub(super) fn outline(self, [x, y]: [f64; 2], r: f64) -> Vec<[f64; 2]> {
         let polygon = |corners: usize, first: f64, r: f64| -> Vec<[f64; 2]> {
@@ -38,6 +47,15 @@ impl Marker {
             Self::TriangleDown => polygon(3, 2.0 * quarter, 1.4 * r),
             Self::Plus => bars([x, y], 1.35 * r, 0.0),
             Self::Cross => bars([x, y], 1.35 * r, quarter),
+            Self::Star => (polygon(5, -2.0 * quarter, 1.6 * r).into_iter())
+                .zip(polygon(
+                    5,
+                    -2.0 * quarter + 0.2 * std::f64::consts::PI,
+                    0.65 * r,
+                ))
+                .flat_map(|(tip, notch)| [tip, notch])
+                .collect(),
+            Self::Ring => polygon(24, 0.0, 1.8 * r),
         }
     }
 }

@@ -54,6 +54,8 @@ pub struct Panel {
     pub series: Vec<Series>,
     /// Height relative to that of the other panels.
     pub weight: f64,
+    /// Values that the vertical axis includes beside those drawn, so that panels can be alike.
+    pub include: Vec<f64>,
     /// Whether the values are numbers of things, which have no decimals.
     pub is_count: bool,
     /// Said instead when there is nothing to draw.
@@ -81,8 +83,23 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
     /// Red, green and blue; else the colours are taken in their order.
     pub color: Option<[u8; 3]>,
-    /// Drawn at every point of a curve.
+    /// Drawn at every point of a curve. Where curves with signs lie on each other, later ones are thinner and have
+    /// smaller signs, so that all are seen.
     pub marker: Option<Marker>,
+    /// Between the points of a curve.
+    pub line: Line,
+}
+
+/// What joins the points of a curve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Line {
+    /// A line.
+    #[default]
+    Solid,
+    /// A hairline behind everything else, to compare curves with.
+    Guide,
+    /// Nothing.
+    None,
 }
 
 pub use marker::Marker;

@@ -254,3 +254,62 @@ fn numbers_of_things_have_whole_ticks() {
     assert!(labels(false).contains(">1.5<"));
     assert!(labels(true).contains(">1<") && !labels(true).contains(">1.5<"));
 }
+
+#[test]
+fn curves_on_each_other_and_signs_around_them_are_all_seen() {
+    let points = [[1.0, 1.0], [2.0, 2.0]];
+    let with = |marker, line, color| Series {
+        marker,
+        line,
+        color: Some(color),
+        ..series("a", &points)
+    };
+    let colors = [[1, 2, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12]];
+    let all = vec![
+        with(Some(Marker::Star), Line::Solid, colors[0]),
+        with(Some(Marker::Star), Line::Solid, colors[1]),
+        with(Some(Marker::Ring), Line::None, colors[2]),
+        with(None, Line::Guide, colors[3]),
+    ];
+    let marks = layout::marks(&chart(vec![panel(Style::Lines, all)]), (800, 600));
+    let line_widths = |wanted: [u8; 3]| -> Vec<f64> {
+        let lines = marks.iter().filter_map(|mark| match mark {
+            Mark::Line { width, color, .. } if *color == wanted => Some(*width),
+            _ => None,
+        });
+        lines.collect()
+    };
+    let sign_width = |wanted: [u8; 3]| {
+        let signs = marks.iter().filter_map(|mark| match mark {
+            Mark::Area { points, color } if *color == wanted => Some(points),
+            _ => None,
+        });
+        let span = |points: &Vec<[f64; 2]>| {
+            let xs = points.iter().map(|point| point[0]);
+            xs.clone().fold(f64::MIN, f64::max) - xs.fold(f64::MAX, f64::min)
+        };
+        signs.map(span).next().unwrap()
+    };
+    assert!(line_widths(colors[0])[0] > line_widths(colors[1])[0]);
+    assert!(sign_width(colors[0]) > sign_width(colors[1]));
+    // Two points and the legend: rings are outlines, and nothing joins them.
+    assert_eq!(line_widths(colors[2]).len(), 3);
+    // Behind the curves, and thinner.
+    assert!(line_widths(colors[3])[0] < line_widths(colors[1])[0]);
+}
+
+#[test]
+fn panels_can_be_made_to_have_the_same_axis() {
+    let labels = |include: Vec<f64>| {
+        let panel = Panel {
+            include,
+            ..panel(
+                Style::LogLines,
+                vec![series("a", &[[1.0, 0.5], [2.0, 0.2]])],
+            )
+        };
+        chart(vec![panel]).to_svg(400, 300).unwrap()
+    };
+    assert!(!labels(Vec::new()).contains("10⁻³"));
+    assert!(labels(vec![1e-3]).contains("10⁻³"));
+}
