@@ -115,7 +115,7 @@ pub(crate) struct RunArguments {
     #[arg(long, conflicts_with = "resume")]
     pub(crate) restart: bool,
     /// Number of threads [default: all cores]; the result is the same bits for any number
-    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse_count, allow_negative_numbers = true)]
     pub(crate) threads: Option<usize>,
     /// Print nothing but warnings and errors
     #[arg(long)]
@@ -249,9 +249,9 @@ pub(crate) enum ExportFormat {
     Glb,
 }
 
-fn parse_threads(text: &str) -> Result<usize, String> {
-    let threads = text.parse().ok().filter(|&threads| threads > 0);
-    threads.ok_or_else(|| "write a whole number, 1 or larger".to_owned())
+fn parse_count(text: &str) -> Result<usize, String> {
+    let count = text.parse().ok().filter(|&count| count > 0);
+    count.ok_or_else(|| "write a whole number, 1 or larger".to_owned())
 }
 
 fn parse_ply(text: &str) -> Result<PathBuf, String> {
@@ -310,7 +310,7 @@ pub(crate) struct SizeArguments {
     #[arg(long, value_delimiter = ',', default_value = "10000,40000,160000", value_parser = parse_faces)]
     pub(crate) faces: Vec<usize>,
     /// Repetitions; the fastest counts
-    #[arg(long, default_value_t = 3, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 3, allow_negative_numbers = true, value_parser = parse_count)]
     pub(crate) repeats: usize,
 }
 
@@ -319,7 +319,7 @@ pub(crate) struct DrapeArguments {
     /// Cells along an edge of the cloth
     #[arg(long, value_delimiter = ',', default_value = "35,70,141")]
     pub(crate) n: Vec<usize>,
-    /// Bending models
+    /// Bending models, or all
     #[arg(long, value_delimiter = ',', default_value = "ds-theta,bac")]
     pub(crate) bending: Vec<String>,
     /// Steps of 20 ms
@@ -332,7 +332,7 @@ pub(crate) struct DrapeArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct LateralBucklingArguments {
-    /// Bending models
+    /// Bending models, or all
     #[arg(
         long,
         value_delimiter = ',',
@@ -367,14 +367,14 @@ fn parse_load(text: &str) -> Result<f64, String> {
 
 #[derive(Debug, Args)]
 pub(crate) struct ModelsArguments {
-    /// Bending models
+    /// Bending models, or all
     #[arg(long, value_delimiter = ',', default_value = "all")]
     pub(crate) models: Vec<String>,
     /// Numbers of triangles, about
     #[arg(long, value_delimiter = ',', default_value = "10000,160000", value_parser = parse_faces)]
     pub(crate) faces: Vec<usize>,
     /// Repetitions; the fastest counts
-    #[arg(long, default_value_t = 3, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 3, allow_negative_numbers = true, value_parser = parse_count)]
     pub(crate) repeats: usize,
 }
 
@@ -407,6 +407,17 @@ mod tests {
     #[test]
     fn the_definition_is_consistent() {
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn help_says_each_default_once() {
+        fn check(command: &mut clap::Command) {
+            for line in command.render_help().to_string().lines() {
+                assert!(line.matches("[default:").count() < 2, "{line}");
+            }
+            command.get_subcommands_mut().for_each(check);
+        }
+        check(&mut Arguments::command());
     }
 
     #[test]

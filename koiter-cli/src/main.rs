@@ -16,6 +16,7 @@ mod interrupt;
 mod logger;
 mod manual;
 mod memory;
+mod model_style;
 mod new;
 mod output;
 mod output_path;

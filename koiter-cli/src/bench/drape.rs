@@ -7,7 +7,7 @@ use koiter::scene::Simulation;
 
 use super::table::{Cell, Table};
 use super::{on_threads, thread_counts};
-use crate::arguments::{DrapeArguments, SceneArguments};
+use crate::arguments::{DrapeArguments, SceneArguments, bending_models};
 use crate::failure::Failure;
 use crate::scene_source::load;
 
@@ -48,7 +48,8 @@ pub(super) fn bench(options: &DrapeArguments) -> Result<Table, Failure> {
         [] => thread_counts(),
         given => given.to_vec(),
     };
-    for bending in &options.bending {
+    for model in bending_models(&options.bending).map_err(Failure::input)? {
+        let bending = model.info().name;
         for &n in &options.n {
             for &count in &threads {
                 let run = on_threads(count, || Run::new(n, bending, options.steps))??;

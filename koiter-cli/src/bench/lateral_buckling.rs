@@ -7,16 +7,16 @@
 use std::path::Path;
 use std::time::Instant;
 
+use koiter::scene::model::BendingModel;
 use koiter::scene::{Simulation, Snapshot};
 use koiter_render::{Chart, Panel, Series, Style};
 use serde_json::{Value, json};
 
 use super::table::{Cell, Table};
-use crate::arguments::{LateralBucklingArguments, SceneArguments};
+use crate::arguments::{LateralBucklingArguments, SceneArguments, bending_models};
 use crate::failure::Failure;
-use crate::output_path;
-use crate::plot;
 use crate::scene_source::load_silently;
+use crate::{model_style, output_path, plot};
 
 /// Lateral displacement over L at which a plate counts as buckled: a plane one stays plane to 1e-12.
 const BUCKLED: f64 = 1e-6;
@@ -46,7 +46,7 @@ fn linear_buckling(width: f64) -> Option<f64> {
 /// One model on one plate.
 struct Study {
     width: f64,
-    bending: String,
+    bending: BendingModel,
     triangles: usize,
     /// Γ* and largest lateral displacement over L.
     curve: Vec<[f64; 2]>,
@@ -81,27 +81,38 @@ pub(super) fn bench(options: &LateralBucklingArguments) -> Result<Table, Failure
         ],
     );
     let mut studies = Vec::new();
+    let models = bending_models(&options.models).map_err(Failure::input)?;
+    let mut widths: Vec<f64> = Vec::new();
     for &width in &options.widths {
-        for bending in &options.models {
+        if !widths.contains(&width) {
+            widths.push(width);
+        }
+    }
+    for &width in &widths {
+        for &bending in &models {
             let study = Study::new(width, bending, options)?;
             table.push(study.row());
             studies.push(study);
         }
     }
     if let Some(folder) = &options.plot {
-        plot_curves(&studies, options, folder)?;
+        plot_curves(&studies, &widths, options, folder)?;
     }
     table.details = Some(studies.iter().map(Study::json).collect());
     Ok(table)
 }
 
 impl Study {
-    fn new(width: f64, bending: &str, options: &LateralBucklingArguments) -> Result<Self, Failure> {
+    fn new(
+        width: f64,
+        bending: BendingModel,
+        options: &LateralBucklingArguments,
+    ) -> Result<Self, Failure> {
         let start = Instant::now();
         let mut plate = Plate::new(width, bending, usize::from(options.cells))?;
         let mut study = Self {
             width,
-            bending: bending.to_owned(),
+            bending,
             triangles: plate.simulation.stats().faces,
             curve: Vec::new(),
             onset: [0.0, f64::INFINITY],
@@ -158,7 +169,7 @@ impl Study {
         });
         vec![
             Cell::Text(self.width.to_string()),
-            Cell::Text(self.bending.clone()),
+            self.bending.info().name.into(),
             self.triangles.into(),
             onset,
             Cell::Text(reference.map_or_else(String::new, |load| format!("{load:.2}"))),
@@ -175,7 +186,7 @@ impl Study {
         let [stable, unstable] = self.onset;
         json!({
             "width_to_length": self.width,
-            "bending": self.bending,
+            "bending": self.bending.info().name,
             "onset": self.critical_load(),
             "largest_stable_load": stable,
             "smallest_unstable_load": unstable.is_finite().then_some(unstable),
@@ -195,7 +206,7 @@ struct Plate {
 
 impl Plate {
     /// A plate of length 1 m with `cells` edges along it.
-    fn new(width: f64, bending: &str, cells: usize) -> Result<Self, Failure> {
+    fn new(width: f64, bending: BendingModel, cells: usize) -> Result<Self, Failure> {
         let columns = (cells as f64 * width + 1e-9).floor().max(1.0);
         let max_area = width / (2.0 * columns * cells as f64);
         // That the plate is thicker than a tenth of its edges is the benchmark's wish.
@@ -204,7 +215,7 @@ impl Plate {
             overrides: vec![
                 format!("shell.plate.mesh.irregular.size=[{width},1.0]"),
                 format!("shell.plate.mesh.irregular.max_area={max_area:e}"),
-                format!("shell.plate.bending={bending}"),
+                format!("shell.plate.bending={}", bending.info().name),
             ],
             memory: None,
         })?
@@ -250,17 +261,14 @@ impl Plate {
 /// One panel a width, like Figure 26 of "Better Bending".
 fn plot_curves(
     studies: &[Study],
+    widths: &[f64],
     options: &LateralBucklingArguments,
     folder: &Path,
 ) -> Result<(), Failure> {
-    let panels = options.widths.iter().map(|&width| {
+    let panels = widths.iter().map(|&width| {
         let of_width = studies.iter().filter(|study| study.width == width);
         let mut series: Vec<Series> = of_width
-            .map(|study| Series {
-                name: study.bending.clone(),
-                points: study.curve_with_onset(),
-                ..Series::default()
-            })
+            .map(|study| model_style::series(study.bending, study.curve_with_onset()))
             .collect();
         let height = (series.iter().flat_map(|s| &s.points))
             .map(|p| p[1])
@@ -269,6 +277,7 @@ fn plot_curves(
         series.push(Series {
             name: "master curve".into(),
             points: vec![[critical, 0.0], [critical, height]],
+            color: Some([0; 3]),
             ..Series::default()
         });
         Panel {

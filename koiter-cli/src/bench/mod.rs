@@ -8,7 +8,6 @@ mod convergence;
 mod creased_vee;
 mod drape;
 mod lateral_buckling;
-mod model_style;
 mod models;
 mod published;
 mod sheet;

@@ -136,6 +136,25 @@ pub enum RestError {
         /// What failed.
         reason: String,
     },
+    /// The director solve of the shape itself failed, the deformed or the start one.
+    #[error(
+        "the directors of the shape itself did not converge: {reason}; check it for folded faces"
+    )]
+    ShapeDirectors {
+        /// What failed.
+        reason: String,
+    },
+}
+
+impl RestError {
+    /// The same of the shape itself, where its directors were solved for.
+    #[must_use]
+    pub(crate) fn of_shape_itself(self) -> Self {
+        match self {
+            Self::Directors { reason } => Self::ShapeDirectors { reason },
+            other => other,
+        }
+    }
 }
 
 #[cfg(test)]

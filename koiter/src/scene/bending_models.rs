@@ -64,7 +64,7 @@ impl BendingModel {
             },
             Self::Ds2nd => BendingModelInfo {
                 name: "ds-2nd",
-                what: "Second-order discrete shells: quadratic patches; for study only, underestimates bending by an order of magnitude or more",
+                what: "Second-order discrete shells: quadratic patches; for study only: its energy is wrong and depends on the mesh and on a barrier",
                 unknowns: ExtraUnknowns::EdgePoints,
                 source: "better-bending-2026, Eq. 21, after le-2023",
             },

@@ -265,7 +265,7 @@ fn director_bending<P: AngleProfile + 'static>(
     let starts_at_rest =
         shell.surface.positions == shell.rest_positions && !shell.has_prescribed_curvature();
     if !starts_at_rest {
-        relax_directors(&mut energy, layout, angles, q)?;
+        relax_directors(&mut energy, layout, angles, q).map_err(RestError::of_shape_itself)?;
     }
     Ok(Some(Box::new(energy)))
 }

@@ -27,7 +27,7 @@ pub enum BendingModel {
     Dso,
     /// Discrete Kirchhoff triangle: unit directors at the vertices.
     Dkt,
-    /// Second-order discrete shells: quadratic patches with a point on every edge, as studied; it underestimates bending.
+    /// Second-order discrete shells: quadratic patches with a point on every edge, as studied; its energy is wrong.
     #[cfg_attr(feature = "serde", serde(rename = "ds-2nd"))]
     Ds2nd,
     /// Averaged mid-edge normals: the director models without directors.

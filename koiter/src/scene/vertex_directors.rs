@@ -64,7 +64,7 @@ pub(super) fn kirchhoff_bending(
         positions: shell.surface.positions.clone(),
     };
     write_points(q, part.first_extra, &vertex_normals(&start));
-    relax_directors(&mut energy, layout, directors, q)?;
+    relax_directors(&mut energy, layout, directors, q).map_err(RestError::of_shape_itself)?;
     Ok(Box::new(energy))
 }
 

@@ -110,6 +110,10 @@ pub(super) fn check(shell: &Shell) -> Result<(), SceneError> {
         CompositionError::Axis { .. } => {
             placed.with_help("give material.axis = [x, y, z] along the surface")
         }
+        CompositionError::Count { .. } => placed.with_help(
+            "each list of the file has one value a face, in the order of the mesh's faces; generated meshes change \
+             theirs with their cells",
+        ),
         _ => placed,
     })
 }

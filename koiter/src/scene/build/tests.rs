@@ -246,9 +246,9 @@ fn implausible_numbers_are_warned_about_not_refused() {
         ),
         (
             "\"cotton\"",
-            "\"cotton\"\nbending = \"qb-pl\"\nrest = \"mesh\"",
+            "\"cotton\"\nbending = \"ds-2nd\"",
             "shell.cloth.bending",
-            "flat rest shapes",
+            "use bac for results",
         ),
     ];
     for (from, to, path, words) in cases {
@@ -263,6 +263,10 @@ fn implausible_numbers_are_warned_about_not_refused() {
         );
         assert!(warning.location.is_some());
     }
+    // Quadratic bending keeps the curvature of a mesh that has none.
+    let flat = "\"cotton\"\nbending = \"qb-pl\"\nrest = \"mesh\"";
+    let scene = build(&SCENE.replacen("\"cotton\"", flat, 1)).unwrap();
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     let text = "time = { end = 1, dt = 1 }\n[[shell]]\nname = \"a\"\nmaterial = \"cotton\"\nmesh.file = \"large.obj\"\n";
     // 500 m for any shell, 50 m for one of a millimetre from a file; not if a unit or a scale was thought of.
     for (more, is_warned) in [
@@ -360,7 +364,7 @@ fn materials_and_rest_forms_that_cannot_be_are_refused_at_their_key() {
         (
             "faces = \"three.json\"",
             "cloth.faces",
-            "has 3 values, but the mesh has 2 faces",
+            "has 3 values, but the mesh has 2 faces | each list of the file has one value a face",
         ),
         (
             "faces = \"negative.json\"",
@@ -385,7 +389,7 @@ fn materials_and_rest_forms_that_cannot_be_are_refused_at_their_key() {
         (
             "rest_stretch = [0, 1]",
             "cloth.rest_stretch.0",
-            "larger than 0",
+            "rest_stretch[0] must be larger than 0",
         ),
         (
             "rest_strech = [1, 1]",

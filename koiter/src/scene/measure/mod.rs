@@ -10,7 +10,7 @@ pub mod shapes;
 
 pub use directors::{Directors, natural_directors};
 pub use free::FreeBending;
-pub use refinement::Refinement;
+pub use refinement::{Refinement, Trend};
 
 use std::ops::Range;
 
@@ -19,6 +19,7 @@ use super::elastic::Elastic;
 use super::model::{
     BendingModel, Composition, ContactOptions, IntegratorKind, Model, Shell, SolverOptions,
 };
+use super::warnings::bending_caveat;
 use crate::Vec3;
 use crate::assembly::Energy;
 use crate::energy::bending::ExtraUnknowns;
@@ -96,24 +97,26 @@ impl Measurement<'_> {
         let membrane = energies.next().expect("every shell has a membrane");
         let mut bending: Vec<_> = energies.collect();
         write_points(&mut q, first_vertex, &self.deformed.positions);
-        let is_at_rest = self.deformed.positions == self.rest_positions;
+        // Building the rest state found its directors, but not the points of edges, which have no rest state.
+        let is_found = self.is_at_rest() && part.extra != ExtraUnknowns::EdgePoints;
         match directors {
             Directors::Zero => q[range.clone()].copy_from_slice(&natural_directors(
                 self.model.info().unknowns,
                 self.deformed,
             )),
             Directors::Given(values) => q[range.clone()].copy_from_slice(values),
-            Directors::Minimise if is_at_rest || range.is_empty() => {}
+            Directors::Minimise if is_found || range.is_empty() => {}
             Directors::Minimise => {
                 let start = natural_directors(self.model.info().unknowns, self.deformed);
                 q[range.clone()].copy_from_slice(&start);
                 let (layout, range) = (&unknowns.layout, range.clone());
-                if part.extra == ExtraUnknowns::EdgePoints {
+                let relaxed = if part.extra == ExtraUnknowns::EdgePoints {
                     let edge = self.deformed.mean_edge_length();
-                    relax_edge_points(&mut bending, layout, range, edge, &mut q)?;
+                    relax_edge_points(&mut bending, layout, range, edge, &mut q)
                 } else {
-                    relax_directors(bending[0].as_mut(), layout, range, &mut q)?;
-                }
+                    relax_directors(bending[0].as_mut(), layout, range, &mut q)
+                };
+                relaxed.map_err(RestError::of_shape_itself)?;
             }
         }
         Ok(MeasuredShape {
@@ -133,6 +136,12 @@ impl Measurement<'_> {
         Ok(self.prepare(&Directors::Minimise)?.energies())
     }
 
+    /// What the bending model does not do here, in words, and what helps: quadratic bending on a curved rest shape, and
+    /// models that are here for study only. Scenes warn of the same.
+    pub fn caveat(&self) -> Option<(String, &'static str)> {
+        bending_caveat(&self.at_rest().shells[0])
+    }
+
     /// The shell in its rest shape: what it takes to build it is then what its rest state takes, whatever is asked of
     /// the deformed one.
     fn build(
@@ -143,10 +152,16 @@ impl Measurement<'_> {
         let unknowns = unknowns(&model);
         let (mut q, _) = unknowns.start(&model);
         let elastic = Elastic::new(&model, &unknowns, &mut q).map_err(|error| match error {
+            // The shape itself, as its own rest shape.
+            BuildError::Rest { error, .. } if self.is_at_rest() => error.of_shape_itself(),
             BuildError::Rest { error, .. } => error,
             other => unreachable!("a single shell without contact: {other}"),
         })?;
         Ok((unknowns, elastic, q))
+    }
+
+    fn is_at_rest(&self) -> bool {
+        self.deformed.positions == self.rest_positions
     }
 
     /// A model of one shell in its rest shape, without anything else.

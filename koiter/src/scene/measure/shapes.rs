@@ -19,6 +19,7 @@ use std::f64::consts::PI;
 use crate::Vec3;
 use crate::mesh::Surface;
 use crate::mesh::generate::{GeneratorError, GridDiagonals, delaunay, grid, random_sphere};
+use crate::scene::model::BendingModel;
 
 const CYLINDER_RADIUS: f64 = 0.0325;
 const CYLINDER_LENGTH: f64 = 0.122;
@@ -71,6 +72,28 @@ pub enum SmoothEnergy {
     SquaredCurvature,
     /// Koiter: (h³/12) ∫ (α/2 (tr S)² + β tr S²) dĀ.
     Koiter,
+}
+
+impl SmoothEnergy {
+    /// What a bending model stands for; `None` for the absence of one.
+    pub fn of(model: BendingModel) -> Option<Self> {
+        match model {
+            BendingModel::Bac
+            | BendingModel::Dcs
+            | BendingModel::Dso
+            | BendingModel::Dkt
+            | BendingModel::MeAverage => Some(Self::Koiter),
+            BendingModel::Ds2nd
+            | BendingModel::DsTheta
+            | BendingModel::DsTan
+            | BendingModel::ChEs
+            | BendingModel::ChFs
+            | BendingModel::QbCr
+            | BendingModel::QbPl
+            | BendingModel::QbInt => Some(Self::SquaredCurvature),
+            BendingModel::None => None,
+        }
+    }
 }
 
 impl KnownShape {

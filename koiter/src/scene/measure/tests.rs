@@ -89,6 +89,64 @@ fn an_unresolved_crease_is_measured_as_published() {
     }
 }
 
+/// The points of DS(2nd) have no rest state: they are relaxed also where the shape is its own rest shape.
+#[test]
+fn points_of_edges_are_relaxed_on_a_shape_that_is_its_own_rest_shape() {
+    let surface = KnownShape::CylinderRegular
+        .surface(4f64.powi(7) * 1e-8)
+        .unwrap();
+    let alone = Measurement {
+        rest_positions: &surface.deformed.positions,
+        ..measurement(&surface, BendingModel::Ds2nd)
+    };
+    let beside_flat = measurement(&surface, BendingModel::Ds2nd);
+    let [relaxed, with_flat] = [alone, beside_flat].map(|m| m.energies().unwrap().bending);
+    let natural = alone.prepare(&Directors::Zero).unwrap().energies().bending;
+    // Chords for arcs: rest lengths differ by (θ/2)²/6, here 0.5 %, and the valley has many floors.
+    assert!(
+        relaxed < 0.1 * natural && (relaxed / with_flat - 1.0).abs() < 0.2,
+        "{relaxed} {with_flat} {natural}"
+    );
+}
+
+#[test]
+fn quadratic_bending_is_warned_of_on_curved_rest_shapes_only() {
+    let surface = KnownShape::CylinderRegular
+        .surface(4f64.powi(7) * 1e-8)
+        .unwrap();
+    let caveat = |model, rest: &[Vec3], rest_curved| {
+        Measurement {
+            rest_positions: rest,
+            rest_curved,
+            ..measurement(&surface, model)
+        }
+        .caveat()
+    };
+    let (flat, curved) = (&surface.rest_positions, &surface.deformed.positions);
+    let quadratic = BendingModel::QbInt;
+    assert!(caveat(quadratic, curved, true).is_some());
+    // A mesh of which the curvature counts may have none.
+    assert!(caveat(quadratic, flat, true).is_none());
+    assert!(caveat(quadratic, curved, false).is_none());
+    assert!(caveat(BendingModel::Bac, curved, true).is_none());
+    assert!(caveat(BendingModel::Ds2nd, flat, false).is_some());
+}
+
+/// The rest shape is flat: what does not converge are the directors of the deformed mesh.
+#[test]
+fn an_error_says_whose_directors_it_means() {
+    let reason = "why".to_owned();
+    let rest = RestError::Directors {
+        reason: reason.clone(),
+    };
+    assert!(rest.to_string().contains("rest directors"));
+    let shape = rest.of_shape_itself().to_string();
+    assert!(
+        shape.contains("shape itself") && !shape.contains("rest mesh") && shape.contains(&reason),
+        "{shape}"
+    );
+}
+
 #[test]
 fn given_directors_are_used_and_gradients_are_those_of_the_energy() {
     let surface = KnownShape::CylinderIrregular.surface(4e-5).unwrap();

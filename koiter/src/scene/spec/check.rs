@@ -414,12 +414,22 @@ pub(super) fn positive(path: &str, value: f64, unit: &str) -> Checked {
     if value.is_finite() && value > 0.0 {
         return Ok(());
     }
-    let key = path.rsplit('.').next().unwrap_or(path);
     let message = format!(
-        "{key} must be larger than 0, but it is {}",
+        "{} must be larger than 0, but it is {}",
+        last_key(path),
         with_unit(value, unit)
     );
     Err(error(Kind::OutOfRange, path, message))
+}
+
+/// What a path ends with: a key, or a place in a list with the key of the list, such as `rest_stretch[0]`.
+fn last_key(path: &str) -> String {
+    let mut parts = path.rsplit('.');
+    let last = parts.next().unwrap_or(path);
+    match (last.parse::<usize>(), parts.next()) {
+        (Ok(index), Some(list)) => format!("{list}[{index}]"),
+        _ => last.to_owned(),
+    }
 }
 
 pub(super) fn optional_positive(path: &str, value: Option<f64>, unit: &str) -> Checked {
@@ -430,9 +440,9 @@ fn not_negative(path: &str, value: f64, unit: &str) -> Checked {
     if value.is_finite() && value >= 0.0 {
         return Ok(());
     }
-    let key = path.rsplit('.').next().unwrap_or(path);
     let message = format!(
-        "{key} must not be negative, but it is {}",
+        "{} must not be negative, but it is {}",
+        last_key(path),
         with_unit(value, unit)
     );
     Err(error(Kind::OutOfRange, path, message))
