@@ -7,7 +7,8 @@ use clap::{Args, ValueHint};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Every case is a scene of benchmarks/ with its published values, computed on three meshes, each with cells half as large
-as the one before. Deviations are those of the finest mesh; for a path the largest along it, over its largest value.
+as the one before. Deviations are those of the finest mesh; for a path the largest along it, over its largest reference,
+and beside it the largest relative to the reference at the same load. The status is 1 if a study could not be computed.
 
 Examples:
   koiter validate --list
@@ -16,12 +17,12 @@ Examples:
   koiter validate cantilever-shear --levels 2 --plot pictures
   koiter validate plate-supported-pressure --models ds-theta,qb-cr    two models that do not converge")]
 pub(crate) struct ValidateArguments {
-    /// Cases [default: all]
+    /// Cases; all of them without any, or with all
     pub(crate) cases: Vec<String>,
     /// Names the cases and runs nothing
     #[arg(long)]
     pub(crate) list: bool,
-    /// Bending models
+    /// Bending models, or all
     #[arg(long, value_delimiter = ',', default_value = "bac,dcs,dso,dkt")]
     pub(crate) models: Vec<String>,
     /// Meshes of every case, from the coarsest

@@ -18,7 +18,7 @@ pub(super) struct Case {
     pub(super) question: Question,
     /// Published values: a table with a heading.
     pub(super) table: &'static str,
-    /// What the figures of the finest mesh may be off by.
+    /// What the figures of the finest mesh may be off by; along a path at every point, over its largest reference.
     pub(super) tolerance: f64,
     /// Whether the extrapolated figure will do: where triangles of constant strain converge slowly.
     pub(super) by_extrapolation: bool,
@@ -29,8 +29,15 @@ pub(super) struct Case {
 pub(super) enum Question {
     /// Probes at the end: (column, factor, row of the table).
     End(&'static [(&'static str, f64, &'static str)]),
-    /// Probes after every step, a row of the table each: (column, factor, offset, column of the table).
-    Path(&'static [(&'static str, f64, f64, &'static str)]),
+    /// Probes after every step, a row of the table each.
+    Path {
+        /// What the load is, with its unit, for figures.
+        load: &'static str,
+        /// Unit of what is compared.
+        unit: &'static str,
+        /// (column, factor, offset, side, column of the table).
+        probes: &'static [(&'static str, f64, f64, Side, &'static str)],
+    },
     /// Angular frequencies after `skipped` motions without resistance: rows of the table that begin with the name.
     Vibration {
         /// How many motions have no resistance.
@@ -40,6 +47,15 @@ pub(super) enum Question {
     },
     /// The lowest buckling factor: a row of the table.
     Buckling(&'static str),
+}
+
+/// To which side a path goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// To that of the table.
+    Known,
+    /// What buckles may do so to either: the side of the end of the path counts as that of the table.
+    Either,
 }
 
 /// A figure to compare.
@@ -83,8 +99,8 @@ impl Case {
                     curve: Vec::new(),
                 })
                 .collect(),
-            Question::Path(probes) => (probes.iter())
-                .map(|(_, _, _, column)| self.path_quantity(&rows, column))
+            Question::Path { probes, .. } => (probes.iter())
+                .map(|(.., column)| self.path_quantity(&rows, column))
                 .collect(),
         }
     }

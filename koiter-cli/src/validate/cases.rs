@@ -1,6 +1,6 @@
 //! The cases: scenes and values of `benchmarks/`.
 
-use super::case::{Case, Question};
+use super::case::{Case, Question, Side};
 
 macro_rules! benchmark {
     ($file:literal) => {
@@ -190,10 +190,14 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "euler-postbuckling",
         title: "Euler's strip beyond buckling, hinged at both ends: lengths over L",
-        question: Question::Path(&[
-            ("end", -1.0, 0.0, "end_shortening"),
-            ("middle", 1.0, 0.0, "middle_deflection"),
-        ]),
+        question: Question::Path {
+            load: "load over the buckling load",
+            unit: "L",
+            probes: &[
+                ("end", -1.0, 0.0, Side::Known, "end_shortening"),
+                ("middle", 1.0, 0.0, Side::Either, "middle_deflection"),
+            ],
+        },
         table: benchmark!("euler-strip/postbuckling.csv"),
         ..STRIP
     },
@@ -202,7 +206,14 @@ pub(super) const CASES: &[Case] = &[
         title: "a clamped strip under its own weight, Γ up to 100: lengths over L",
         scene: benchmark!("heavy-elastica/scene.toml"),
         table: benchmark!("heavy-elastica/elastica.csv"),
-        question: Question::Path(&[("tip.z", -1.0, 0.0, "drop"), ("tip.x", 1.0, 1.0, "reach")]),
+        question: Question::Path {
+            load: "load Γ = ρ g h L³ / B",
+            unit: "L",
+            probes: &[
+                ("tip.z", -1.0, 0.0, Side::Known, "drop"),
+                ("tip.x", 1.0, 1.0, Side::Known, "reach"),
+            ],
+        },
         tolerance: 0.01,
         ..LARGE
     },
@@ -249,10 +260,15 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "hemisphere-large",
         title: "pinched hemisphere, large displacements (Sze 3.4): P up to 400",
-        question: Question::Path(&[
-            ("outward", 1.0, 0.0, "outward"),
-            ("inward", -1.0, 0.0, "inward"),
-        ]),
+        tolerance: 0.015,
+        question: Question::Path {
+            load: "force over 400 N",
+            unit: "m",
+            probes: &[
+                ("outward", 1.0, 0.0, Side::Known, "outward"),
+                ("inward", -1.0, 0.0, Side::Known, "inward"),
+            ],
+        },
         table: benchmark!("pinched-hemisphere/large.csv"),
         levels: &[&[8], &[16], &[32]],
         ..HEMISPHERE
@@ -262,10 +278,15 @@ pub(super) const CASES: &[Case] = &[
         title: "cantilever under end shear (Sze 3.1): tip displacements",
         scene: benchmark!("cantilever-end-shear/scene.toml"),
         table: benchmark!("cantilever-end-shear/reference.csv"),
-        question: Question::Path(&[
-            ("tip.x", -1.0, 0.0, "end_shortening"),
-            ("tip.z", 1.0, 0.0, "end_deflection"),
-        ]),
+        tolerance: 0.005,
+        question: Question::Path {
+            load: "force over 4 N",
+            unit: "m",
+            probes: &[
+                ("tip.x", -1.0, 0.0, Side::Known, "end_shortening"),
+                ("tip.z", 1.0, 0.0, Side::Known, "end_deflection"),
+            ],
+        },
         ..LARGE
     },
     Case {
@@ -273,10 +294,15 @@ pub(super) const CASES: &[Case] = &[
         title: "cantilever under an end moment, up to a circle (Sze 3.2): tip displacements",
         scene: benchmark!("cantilever-end-moment/scene.toml"),
         table: benchmark!("cantilever-end-moment/reference.csv"),
-        question: Question::Path(&[
-            ("tip.x", -1.0, 0.0, "end_shortening"),
-            ("tip.z", 1.0, 0.0, "end_deflection"),
-        ]),
+        tolerance: 0.005,
+        question: Question::Path {
+            load: "moment over 2π E I / L",
+            unit: "m",
+            probes: &[
+                ("tip.x", -1.0, 0.0, Side::Known, "end_shortening"),
+                ("tip.z", 1.0, 0.0, Side::Known, "end_deflection"),
+            ],
+        },
         ..LARGE
     },
 ];

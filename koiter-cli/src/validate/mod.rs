@@ -16,7 +16,7 @@ use serde_json::json;
 use self::case::Case;
 use self::cases::CASES;
 use self::study::Study;
-use crate::arguments::ValidateArguments;
+use crate::arguments::{ValidateArguments, bending_models};
 use crate::failure::Failure;
 use crate::output::say;
 use crate::output_path;
@@ -28,6 +28,7 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<(), Failure> {
         return Ok(());
     }
     let cases = chosen(&arguments.cases)?;
+    let models = bending_models(&arguments.models).map_err(Failure::input)?;
     if let Some(folder) = &arguments.plot {
         output_path::make_folder(folder)?;
     }
@@ -36,11 +37,11 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<(), Failure> {
     let mut marks = [0; 3];
     for case in cases {
         let mut studies = Vec::new();
-        for model in &arguments.models {
+        for &model in &models {
             match Study::new(case, model, arguments.levels) {
                 Ok(study) => studies.push(study),
                 Err(failure) => {
-                    refusals.push((case.name, model.clone(), failure.message().to_owned()))
+                    refusals.push((case.name, model.info().name, failure.message().to_owned()))
                 }
             }
         }
@@ -80,11 +81,21 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<(), Failure> {
             "\n{within} figures within their tolerance on the finest mesh, {in_the_limit} when extrapolated, {outside} outside"
         );
     }
-    Ok(())
+    if refusals.is_empty() {
+        return Ok(());
+    }
+    let studies: Vec<String> = (refusals.iter())
+        .map(|(case, model, _)| format!("{case} with {model}"))
+        .collect();
+    Err(Failure::run(format!(
+        "not computed: {}",
+        studies.join(", ")
+    )))
 }
 
+/// The cases of a list of names, each once; none and `all` stand for all.
 fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
-    if names.is_empty() {
+    if names.is_empty() || names.iter().any(|name| name == "all") {
         return Ok(CASES.iter().collect());
     }
     let find = |name: &String| {
@@ -96,7 +107,14 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
             })
         })
     };
-    names.iter().map(find).collect()
+    let mut cases: Vec<&'static Case> = Vec::new();
+    for name in names {
+        let case = find(name)?;
+        if !cases.iter().any(|chosen| chosen.name == case.name) {
+            cases.push(case);
+        }
+    }
+    Ok(cases)
 }
 
 fn list(json: bool) {
@@ -115,6 +133,7 @@ fn list(json: bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use koiter::scene::model::BendingModel;
 
     #[test]
     fn every_case_has_a_sound_scene_and_its_published_values() {
@@ -127,8 +146,8 @@ mod tests {
                 let doubled: Vec<usize> = pair[0].iter().map(|n| 2 * n).collect();
                 assert_eq!(pair[1], doubled, "{}", case.name);
             }
-            let scene = study::scene(case, "dso", case.levels[0]).unwrap();
-            assert_eq!(scene.model.shells[0].bending.info().name, "dso");
+            let scene = study::scene(case, BendingModel::Dso, case.levels[0]).unwrap();
+            assert_eq!(scene.model.shells[0].bending, BendingModel::Dso);
         }
     }
 
@@ -137,7 +156,7 @@ mod tests {
         for (name, tolerance) in [("euler-hinged", 0.01), ("plate-supported-pressure", 0.01)] {
             let case = chosen(&[name.to_owned()]).unwrap()[0];
             // The coarsest of its meshes.
-            let study = Study::new(case, "dkt", 1).unwrap();
+            let study = Study::new(case, BendingModel::Dkt, 1).unwrap();
             for finding in &study.findings {
                 assert!(
                     finding.deviation.abs() < tolerance,

@@ -1,6 +1,6 @@
 //! The table for people.
 
-use super::case::Case;
+use super::case::{Case, Question};
 use super::study::{Finding, Study};
 use crate::output::say;
 
@@ -14,13 +14,20 @@ pub(super) fn print(case: &Case, studies: &[Study]) {
             format!("{:>10}", numbers.join("x"))
         })
         .collect();
+    if matches!(case.question, Question::Path { .. }) {
+        say!(
+            "  deviation: the largest along the path, over the largest reference on it; local: the largest, over the reference at \
+             the same load"
+        );
+    }
     say!(
-        "  {:18} {:10} {} {:>10} {:>9} {:>6} {:>12} {:>9}  {:15} {:>6}",
+        "  {:18} {:10} {} {:>10} {:>9} {:>9} {:>6} {:>12} {:>9}  {:15} {:>6}",
         "quantity",
         "bending",
         meshes.join(" "),
         "reference",
         "deviation",
+        "local",
         "order",
         "extrapolated",
         "deviation",
@@ -43,15 +50,16 @@ fn print_row(finding: &Finding, study: &Study, with_time: bool) {
         Some((order, limit, off)) => (format!("{order:.2}"), digits(limit), percent(off)),
         None => (dash(), dash(), dash()),
     };
+    let local = finding.local_deviation.map_or_else(dash, percent);
     let seconds = if with_time {
         format!("{:.1}", study.seconds)
     } else {
         String::new()
     };
     say!(
-        "  {:18} {:10} {} {:>10} {:>9} {order:>6} {limit:>12} {off:>9}  {:15} {seconds:>6}",
+        "  {:18} {:10} {} {:>10} {:>9} {local:>9} {order:>6} {limit:>12} {off:>9}  {:15} {seconds:>6}",
         finding.quantity.name,
-        study.model,
+        study.model.info().name,
         figures.join(" "),
         digits(finding.quantity.reference),
         percent(finding.deviation),

@@ -2,10 +2,11 @@
 
 use std::time::Instant;
 
+use koiter::scene::model::BendingModel;
 use koiter::scene::{NoFiles, Scene, SceneFile, Simulation};
 use serde_json::{Value, json};
 
-use super::case::{Case, Quantity, Question};
+use super::case::{Case, Quantity, Question, Side};
 use super::convergence::extrapolate;
 use crate::failure::Failure;
 use crate::probes::values_by_column;
@@ -19,6 +20,8 @@ pub(super) struct Finding {
     pub(super) curve: Vec<[f64; 2]>,
     /// Deviation on the finest mesh, relative; for a path the largest along it over the largest reference.
     pub(super) deviation: f64,
+    /// Along a path the largest deviation relative to the reference at the same load, where that is not 0.
+    pub(super) local_deviation: Option<f64>,
     /// Observed order, extrapolated figure and its relative deviation.
     pub(super) limit: Option<(f64, f64, f64)>,
     pub(super) verdict: Verdict,
@@ -46,7 +49,7 @@ impl Verdict {
 
 /// A case with a model.
 pub(super) struct Study {
-    pub(super) model: String,
+    pub(super) model: BendingModel,
     pub(super) cells: Vec<&'static [usize]>,
     pub(super) findings: Vec<Finding>,
     pub(super) seconds: f64,
@@ -57,7 +60,7 @@ type Measured = Vec<Vec<f64>>;
 
 impl Study {
     /// Runs the case on its `levels` coarsest meshes.
-    pub(super) fn new(case: &Case, model: &str, levels: usize) -> Result<Self, Failure> {
+    pub(super) fn new(case: &Case, model: BendingModel, levels: usize) -> Result<Self, Failure> {
         let start = Instant::now();
         let cells = case.levels[..levels.min(case.levels.len())].to_vec();
         let measured = (cells.iter())
@@ -71,7 +74,7 @@ impl Study {
             })
             .collect();
         Ok(Self {
-            model: model.to_owned(),
+            model,
             cells,
             findings,
             seconds: start.elapsed().as_secs_f64(),
@@ -86,6 +89,7 @@ impl Study {
                     "figures": finding.figures,
                     "reference": finding.quantity.reference,
                     "deviation": finding.deviation,
+                    "largest_local_deviation": finding.local_deviation,
                     "observed_order": finding.limit.map(|limit| limit.0),
                     "extrapolated": finding.limit.map(|limit| limit.1),
                     "extrapolated_deviation": finding.limit.map(|limit| limit.2),
@@ -98,7 +102,7 @@ impl Study {
         json!({
             "case": case.name,
             "title": case.title,
-            "bending": self.model,
+            "bending": self.model.info().name,
             "cells": self.cells,
             "tolerance": case.tolerance,
             "quantities": rows,
@@ -132,11 +136,12 @@ impl Finding {
         } else {
             (curve.iter().zip(&quantity.curve))
                 .map(|(found, known)| off(found[1], known[1]))
-                .fold(
-                    0.0,
-                    |worst: f64, d| if d.abs() <= worst.abs() { worst } else { d },
-                )
+                .fold(0.0, larger)
         };
+        let local_deviation = (curve.iter().zip(&quantity.curve))
+            .filter(|(_, known)| known[1] != 0.0)
+            .map(|(found, known)| found[1] / known[1] - 1.0)
+            .reduce(larger);
         let limit = extrapolate(&figures)
             .map(|(order, value)| (order, value, off(value, quantity.reference)));
         let is_within = |d: f64| d.abs() <= case.tolerance;
@@ -152,25 +157,34 @@ impl Finding {
             figures,
             curve,
             deviation,
+            local_deviation,
             limit,
             verdict,
         }
     }
 }
 
+/// The one of larger size; NaN wins.
+fn larger(worst: f64, deviation: f64) -> f64 {
+    match deviation.abs() <= worst.abs() {
+        true => worst,
+        false => deviation,
+    }
+}
+
 /// The scene of a case on a mesh.
-pub(super) fn scene(case: &Case, model: &str, cells: &[usize]) -> Result<Scene, Failure> {
+pub(super) fn scene(case: &Case, model: BendingModel, cells: &[usize]) -> Result<Scene, Failure> {
     let mut set: Vec<String> = case.set.iter().map(|text| (*text).to_owned()).collect();
     set.push(match cells {
         [one] => format!("{}={one}", case.cells_key),
         several => format!("{}={several:?}", case.cells_key),
     });
-    set.push(format!("{}.bending={model}", case.shell()));
+    set.push(format!("{}.bending={}", case.shell(), model.info().name));
     let file = SceneFile::parse(case.name, case.scene, &set)?;
     Ok(Scene::build(&file, &NoFiles)?)
 }
 
-fn measure(case: &Case, model: &str, cells: &[usize]) -> Result<Measured, Failure> {
+fn measure(case: &Case, model: BendingModel, cells: &[usize]) -> Result<Measured, Failure> {
     let scene = scene(case, model, cells)?;
     let mut simulation = Simulation::new(scene.model.clone()).map_err(Failure::input)?;
     match case.question {
@@ -193,13 +207,17 @@ fn measure(case: &Case, model: &str, cells: &[usize]) -> Result<Measured, Failur
                 .map(|(column, factor, _)| Ok(vec![factor * value(end, column)?]))
                 .collect()
         }
-        Question::Path(probes) => {
+        Question::Path { probes, .. } => {
             let path = run(&scene, &mut simulation)?;
-            let along = |(column, factor, offset, _): &(&str, f64, f64, &str)| {
-                // What buckles may do so to either side: tables list magnitudes.
-                (path.iter())
-                    .map(|row| Ok((offset + factor * value(row, column)?).abs()))
-                    .collect()
+            let along = |&(column, factor, offset, side, _): &(&str, f64, f64, Side, &str)| {
+                let values: Result<Vec<f64>, Failure> = (path.iter())
+                    .map(|row| Ok(offset + factor * value(row, column)?))
+                    .collect();
+                let mut values = values?;
+                if side == Side::Either && values.last().is_some_and(|last| *last < 0.0) {
+                    values.iter_mut().for_each(|value| *value = -*value);
+                }
+                Ok(values)
             };
             probes.iter().map(along).collect()
         }
