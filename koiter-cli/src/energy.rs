@@ -1,6 +1,7 @@
 //! `koiter energy`: the energies of a mesh under any model.
 
 mod director_file;
+mod report;
 
 use std::path::Path;
 
@@ -8,14 +9,14 @@ use koiter::Vec3;
 use koiter::energy::bending::ExtraUnknowns;
 use koiter::io::read_mesh;
 use koiter::mesh::{Surface, SurfaceOptions, UnreferencedPolicy};
-use koiter::scene::measure::{Directors, MeasuredShape, Measurement};
+use koiter::scene::measure::{Directors, Measurement};
 use koiter::scene::model::BendingModel;
-use serde_json::{Map, Value, json};
 
 use crate::arguments::{DirectorSource, EnergyArguments, RestCurvature, bending_models};
 use crate::failure::Failure;
-use crate::output::say;
+use crate::output::{say, say_error};
 use director_file::DirectorFile;
+use report::Row;
 
 /// Measures and prints.
 pub(crate) fn energy(arguments: &EnergyArguments) -> Result<(), Failure> {
@@ -42,27 +43,40 @@ pub(crate) fn energy(arguments: &EnergyArguments) -> Result<(), Failure> {
         rest_curved: curvature == RestCurvature::Mesh,
         given,
     };
-    // The membrane does not depend on the bending model.
-    let membrane = task.measure(BendingModel::None, &Directors::Minimise)?;
-    let mut results = Vec::new();
+    // The membrane does not depend on the bending model. Without a membrane there is no rest shape either.
+    let membrane = (task.measurement(BendingModel::None))
+        .prepare(&Directors::Minimise)
+        .map_err(Failure::input)?;
+    let mut rows = Vec::new();
     for model in &models {
-        let (directors, from) = task.directors(*model, models.len() == 1)?;
-        results.push((model.info().name, from, task.measure(*model, &directors)?));
+        rows.push(task.row(*model, models.len() == 1)?);
     }
     if arguments.json {
-        say!("{}", task.json(&membrane, &results));
-        return Ok(());
+        let json = report::json(&deformed, &membrane, &rows, arguments.gradient);
+        say!("{json}");
+    } else {
+        say!("{}", report::text(&membrane, &rows));
     }
-    say!("model       energy [J]    directors");
-    say!("membrane    {:<12.6e}", membrane.energies().membrane);
-    for (name, from, shape) in &results {
-        let energy = match shape.is_admissible() {
-            true => format!("{:.6e}", shape.energies().bending),
-            false => "not defined at these directors".to_owned(),
+    missing(&rows, &arguments.model)
+}
+
+/// Says which models have no energy here; a failure if one of them was asked for by name and not by `all`.
+fn missing(rows: &[Row], asked: &[String]) -> Result<(), Failure> {
+    let mut named = Vec::new();
+    for row in rows {
+        let (name, Err(reason)) = (row.model.info().name, &row.shape) else {
+            continue;
         };
-        say!("{name:10}  {energy:<12}  {from}");
+        if asked.iter().any(|asked| asked == name) {
+            named.push(format!("{name}: {reason}"));
+        } else {
+            say_error!("warning: {name}: {reason}");
+        }
     }
-    Ok(())
+    match named.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::run(named.join("\n"))),
+    }
 }
 
 struct Task<'a> {
@@ -95,12 +109,27 @@ impl Task<'_> {
         }
     }
 
-    fn measure(
-        &self,
-        model: BendingModel,
-        directors: &Directors,
-    ) -> Result<MeasuredShape, Failure> {
-        let measurement = Measurement {
+    /// Measures a model, and says what it does not do.
+    fn row(&self, model: BendingModel, is_only: bool) -> Result<Row, Failure> {
+        let (directors, directors_from) = self.directors(model, is_only)?;
+        let measurement = self.measurement(model);
+        if let Some((caveat, help)) = measurement.caveat() {
+            say_error!("warning: {caveat}; {help}");
+        }
+        let shape = match measurement.prepare(&directors) {
+            Ok(shape) if shape.is_admissible() => Ok(shape),
+            Ok(_) => Err(not_defined(&directors, model.info().unknowns)),
+            Err(error) => Err(error.to_string()),
+        };
+        Ok(Row {
+            model,
+            directors_from,
+            shape,
+        })
+    }
+
+    fn measurement(&self, model: BendingModel) -> Measurement<'_> {
+        Measurement {
             deformed: self.deformed,
             rest_positions: self.rest_positions,
             rest_curved: self.rest_curved,
@@ -108,61 +137,22 @@ impl Task<'_> {
             thickness: self.arguments.thickness,
             youngs_modulus: self.arguments.young,
             poissons_ratio: self.arguments.poisson,
-        };
-        let name = model.info().name;
-        (measurement.prepare(directors)).map_err(|error| Failure::run(format!("{name}: {error}")))
-    }
-
-    fn json(
-        &self,
-        membrane: &MeasuredShape,
-        results: &[(&'static str, &'static str, MeasuredShape)],
-    ) -> Value {
-        let mut stvk = json!({ "energy": membrane.energies().membrane });
-        if self.arguments.gradient {
-            stvk["gradient"] = points(&membrane.gradient().membrane);
         }
-        let mut bending = Map::new();
-        for (name, from, shape) in results {
-            let measured = shape.energies();
-            // Not finite, so null, where BAC is not defined.
-            let energy = if shape.is_admissible() {
-                measured.bending
-            } else {
-                f64::INFINITY
-            };
-            let mut entry = json!({ "energy": energy });
-            let unknowns = (BendingModel::ALL.into_iter())
-                .find(|model| model.info().name == *name)
-                .map_or(ExtraUnknowns::None, |model| model.info().unknowns);
-            if self.arguments.gradient {
-                let gradient = shape.gradient();
-                entry["gradient"] = points(&gradient.bending);
-                if unknowns != ExtraUnknowns::None {
-                    entry["director_gradient"] = nodes(unknowns, &gradient.directors);
-                }
-            }
-            if unknowns != ExtraUnknowns::None {
-                entry["directors"] =
-                    director_file::json(unknowns, self.deformed, &measured.directors);
-                entry["directors_from"] = json!(from);
-            }
-            bending.insert((*name).to_owned(), entry);
-        }
-        json!({ "membrane": { "stvk": stvk }, "bending": bending })
     }
 }
 
-fn points(points: &[Vec3]) -> Value {
-    points.iter().map(|x| json!([x.x, x.y, x.z])).collect()
-}
-
-/// Values of nodes of one or three unknowns.
-fn nodes(unknowns: ExtraUnknowns, values: &[f64]) -> Value {
-    match unknowns.node_size() {
-        1 => json!(values),
-        _ => values.chunks_exact(3).map(|x| json!(x)).collect(),
+/// Why an energy is not defined: tangents end at right angles.
+fn not_defined(directors: &Directors, unknowns: ExtraUnknowns) -> String {
+    match (directors, unknowns) {
+        (Directors::Minimise, _) | (_, ExtraUnknowns::None) => {
+            "the energy is not defined on this shape: a fold is closed, and its faces lie on each other; open it"
+        }
+        _ => {
+            "the energy is not defined at these directors: one of them is turned by a right angle or more off the normal \
+             of a face; give directors nearer to the normals, or write --directors minimise"
+        }
     }
+    .to_owned()
 }
 
 /// Vertices keep the numbers of the file, so none may be left out.

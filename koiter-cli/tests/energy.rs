@@ -113,6 +113,94 @@ fn without_a_rest_shape_the_mesh_is_flat_in_its_own_metric() {
     assert!(stdout(&table).contains("membrane") && stdout(&table).contains("ds-theta"));
 }
 
+/// BAC's profile ends at a right angle.
+#[test]
+fn a_model_without_an_energy_is_null_with_its_reason_and_fails_only_if_it_was_named() {
+    let folder = Folder::new();
+    let tent = folder.write("tent.obj", TENT);
+    let at_rest = json(&["--deformed", &tent, "--model", "bac"]);
+    let mut directors = at_rest["bending"]["bac"]["directors"].clone();
+    directors["edge_angles"][0] = 3.0.into();
+    let file = folder.write("d.json", &directors.to_string());
+    let run = |model: &str| {
+        let given = [
+            "energy",
+            "--deformed",
+            &tent,
+            "--directors",
+            &file,
+            "--model",
+            model,
+        ];
+        let output = koiter(&[&given[..], &SHELL, &["--gradient", "--json"]].concat());
+        let printed: Value = serde_json::from_str(&stdout(&output)).unwrap();
+        (status(&output), stderr(&output), printed["bending"].clone())
+    };
+    let (code, said, bending) = run("bac,dso");
+    assert_eq!(code, 1, "{said}");
+    let bac = &bending["bac"];
+    assert!(
+        bac["energy"].is_null() && bac["gradient"].is_null(),
+        "{bac}"
+    );
+    for words in [said.as_str(), bac["reason"].as_str().unwrap()] {
+        assert!(
+            words.contains("right angle") && words.contains("--directors minimise"),
+            "{words}"
+        );
+    }
+    assert!(bending["dso"]["energy"].as_f64().unwrap() > 0.0);
+    let (code, said, bending) = run("all");
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("warning: bac"), "{said}");
+    assert!(bending["bac"]["energy"].is_null() && bending["dcs"]["energy"].is_number());
+}
+
+#[test]
+fn a_closed_fold_has_no_energy_with_tangents() {
+    let folder = Folder::new();
+    let closed = "v 0 0 0\nv 1 0 0\nv 0.4 1 0\nv 0.4 1 0\nf 1 2 3\nf 2 1 4\n";
+    let fold = folder.write("fold.obj", closed);
+    let output = koiter(
+        &[
+            &["energy", "--deformed", &fold, "--model", "ds-tan,ds-theta"][..],
+            &SHELL,
+        ]
+        .concat(),
+    );
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("ds-tan: the energy is not defined on this shape"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(stdout(&output).contains("ds-theta") && stdout(&output).contains("not computed"));
+}
+
+#[test]
+fn models_that_are_not_made_for_a_shape_are_warned_of_once_each() {
+    let folder = Folder::new();
+    let files = [("tent.obj", "0.2"), ("low.obj", "0.1"), ("flat.obj", "0")];
+    let [tent, low, flat] =
+        files.map(|(name, height)| folder.write(name, &TENT.replace("0.2", height)));
+    let warnings = |rest: &str| {
+        let output =
+            koiter(&[&["energy", "--deformed", &tent, "--rest", rest][..], &SHELL].concat());
+        assert_eq!(status(&output), 0, "{}", stderr(&output));
+        stderr(&output)
+    };
+    let curved = warnings(&low);
+    for model in ["qb-cr", "qb-pl", "qb-int", "energy of ds-2nd"] {
+        assert_eq!(curved.matches(model).count(), 1, "{model}: {curved}");
+    }
+    // The rest mesh counts with its curvature, which is none.
+    let flat = warnings(&flat);
+    assert!(
+        !flat.contains("qb-") && flat.matches("ds-2nd").count() == 1,
+        "{flat}"
+    );
+}
+
 #[test]
 fn meshes_that_are_not_the_same_are_refused_with_the_first_difference() {
     let folder = Folder::new();
@@ -160,6 +248,7 @@ fn bad_directors_are_refused_with_their_place() {
     };
     for (text, said) in [
         ("{", "no file of directors"),
+        ("[]", "must hold an object"),
         (r#"{"angles": []}"#, "angles"),
         (r#"{"edge_angles": [0.1]}"#, "no edges"),
         (
@@ -275,4 +364,93 @@ fn the_benchmarks_print_their_cells() {
     assert!(
         refused(&["bench", "convergence", "--cases", "cone"]).contains("there is no case cone")
     );
+}
+
+#[test]
+fn benchmarks_say_what_they_cannot_measure() {
+    for (arguments, said) in [
+        (
+            &["convergence", "--levels", "3", "--models", "ds-2nd"][..],
+            "cylinder-regular only",
+        ),
+        (
+            &["creased-vee", "--models", "ds-2nd"],
+            "needs a smooth surface",
+        ),
+        (&["lateral-buckling", "--models", "bca"], "did you mean bac"),
+        (&["drape", "--bending", "bca"], "did you mean bac"),
+        (&["models", "--repeats", "0"], "1 or larger"),
+    ] {
+        let message = refused(&[&["bench"], arguments].concat());
+        assert!(
+            message.contains(said) && !message.contains("--set"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn published_figures_stand_beside_those_of_their_level_only() {
+    let text = |levels: &str| {
+        let output = koiter(&[
+            "bench",
+            "convergence",
+            "--models",
+            "ds-theta,ds-2nd",
+            "--cases",
+            "cylinder-regular",
+            "--levels",
+            levels,
+        ]);
+        assert_eq!(status(&output), 0, "{}", stderr(&output));
+        stdout(&output)
+    };
+    let fine = text("0");
+    // "Better Bending", Table 4.
+    assert!(
+        fine.contains("✓ 1.61e-1") && fine.contains("ds-2nd is measured"),
+        "{fine}"
+    );
+    let coarse = text("7,6");
+    assert!(
+        !coarse.contains('✓') && !coarse.contains('✗') && !coarse.contains("1.61e-1"),
+        "{coarse}"
+    );
+}
+
+#[test]
+fn validation_takes_names_once_and_knows_them() {
+    let wrong = refused(&["validate", "plate-supported-pressure", "--models", "bca"]);
+    assert!(wrong.contains("did you mean bac"), "{wrong}");
+    // Its points have no stiffness of their own in a plane strip.
+    let output = koiter(&[
+        "validate",
+        "euler-hinged",
+        "--models",
+        "ds-2nd,dkt",
+        "--levels",
+        "1",
+    ]);
+    assert_eq!(status(&output), 1, "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("euler-hinged with ds-2nd"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(stdout(&output).contains("dkt"));
+    let twice = [
+        "validate",
+        "plate-supported-pressure",
+        "plate-supported-pressure",
+    ];
+    let output = koiter(
+        &[
+            &twice[..],
+            &["--models", "dkt,dkt", "--levels", "1", "--json"],
+        ]
+        .concat(),
+    );
+    assert_eq!(status(&output), 0, "{}", stderr(&output));
+    let printed: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(printed["studies"].as_array().unwrap().len(), 1);
 }

@@ -15,6 +15,9 @@ A file of directors is JSON: {\"edges\": [[u, v], …], \"edge_angles\": […]} 
 {\"vertex_directors\": [[x, y, z], …]}, or {\"edges\": [[u, v], …], \"edge_points\": [[x, y, z], …]}, as --json prints them.
 With several models, those that have other directors than the file minimise theirs.
 
+A model without an energy here (its directors do not converge, or it is not defined at the given ones) has null in the
+JSON with a reason, and a warning. The status is 1 if it was asked for by its name, and 0 under all.
+
 Examples:
   koiter energy --deformed bent.obj --thickness 1e-4 --young 1e11 --poisson 0.3
   koiter energy --deformed bent.ply --rest flat.ply --model bac,dso --thickness 1e-4 --young 1e11 --poisson 0.3 --json
@@ -85,7 +88,7 @@ Examples:
   koiter bench convergence --levels 4,3,2 --models bac,dso --cases sphere,helix-irregular
   koiter bench convergence --levels 4,3,2,1,0 --plot pictures --json > table4.json")]
 pub(crate) struct ConvergenceArguments {
-    /// Bending models [default: all]
+    /// Bending models, or all
     #[arg(
         long,
         value_name = "NAME",
@@ -96,7 +99,7 @@ pub(crate) struct ConvergenceArguments {
     /// Levels of refinement, 8 (coarse) to 0
     #[arg(long, value_name = "K", value_delimiter = ',', default_value = "4,3,2,1", value_parser = clap::value_parser!(u8).range(0..=8))]
     pub(crate) levels: Vec<u8>,
-    /// Shapes [default: all]
+    /// Shapes, or all
     #[arg(
         long,
         value_name = "NAME",
@@ -115,7 +118,7 @@ Examples:
   koiter bench creased-vee
   koiter bench creased-vee --models bac,dcs --plot pictures --json")]
 pub(crate) struct CreasedVeeArguments {
-    /// Bending models [default: all]
+    /// Bending models, or all
     #[arg(
         long,
         value_name = "NAME",

@@ -32,9 +32,14 @@ impl DirectorFile {
         let wrong = |what: String| Failure::input(format!("{}: {what}", path.display()));
         let bytes = read_bounded(path, MAX_DATA_BYTES)
             .map_err(|error| wrong(format!("cannot read the directors: {error}")))?;
+        let help = "koiter energy --help shows the form; --json prints directors in it";
+        if !bytes.trim_ascii_start().starts_with(b"{") {
+            let form = "{\"edges\": [[u, v], …], \"edge_angles\": […]} or {\"vertex_directors\": [[x, y, z], …]}";
+            let what = format!("this is no file of directors: it must hold an object, as {form}");
+            return Err(wrong(what).with_help(help));
+        }
         let content = serde_json::from_slice(&bytes).map_err(|error| {
-            wrong(format!("this is no file of directors: {error}"))
-                .with_help("koiter energy --help shows the form; --json prints directors in it")
+            wrong(format!("this is no file of directors: {error}")).with_help(help)
         })?;
         let path = path.to_path_buf();
         Ok(Self { path, content })
