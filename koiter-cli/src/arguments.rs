@@ -82,7 +82,8 @@ and others) complete its keys and mark mistakes.")]
 #[derive(Debug, Args)]
 #[command(after_help = "\
 SCENE is a scene.toml, a folder that holds one, or a scene that ships with Koiter:
-  sphere-drape, drape-n, cantilever, hanging-sheet, v-beam, rolled-strip, hinged-roof, lateral-buckling, your-own-mesh
+  sphere-drape, drape-n, cantilever, hanging-sheet, v-beam, rolled-strip, hinged-roof, lateral-buckling,
+  popper, pinned-drop, ball-crash, twisted-cylinder, your-own-mesh
 
 Examples:
   koiter run sphere-drape

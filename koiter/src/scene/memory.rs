@@ -144,7 +144,11 @@ fn generated_faces(spec: &MeshSpec) -> f64 {
             .map(|g| face_count::cells(g.cells[0], g.cells[1])),
         spec.cap.as_ref().map(|g| {
             let hole = g.hole_degrees.map_or(0.0, radians);
-            face_count::spherical_cap(radians(g.degrees), hole, g.rings)
+            let angle = radians(g.degrees);
+            match g.inset {
+                None => face_count::spherical_cap(angle, hole, g.rings),
+                Some(inset) => face_count::inset_cap(g.radius, angle, hole, inset, g.rings),
+            }
         }),
     ];
     counts.into_iter().flatten().sum()
@@ -203,6 +207,7 @@ mod tests {
             "panel = { radius = 1.0, length = 2.0, degrees = [0.0, 40.0], cells = [20, 30] }",
             "zone = { radius = 1.0, longitudes = [0.0, 90.0], latitudes = [0.0, 72.0], cells = [20, 30] }",
             "cap = { radius = 1.0, degrees = 80.0, hole_degrees = 10.0, rings = 15 }",
+            "cap = { radius = 0.1, degrees = 72.0, hole_degrees = 8.0, inset = 0.012, rings = 15 }",
         ] {
             let spec = &scene(mesh).spec.shell[0].mesh;
             let expected = generated_faces(spec);

@@ -149,7 +149,11 @@ fn generate(spec: &MeshSpec) -> Result<Surface, GeneratorError> {
     }
     if let Some(g) = &spec.cap {
         let hole = g.hole_degrees.map(f64::to_radians);
-        return generate::spherical_cap(g.radius, g.degrees.to_radians(), hole, g.rings);
+        let angle = g.degrees.to_radians();
+        return match g.inset {
+            None => generate::spherical_cap(g.radius, angle, hole, g.rings),
+            Some(inset) => generate::inset_cap(g.radius, angle, hole, inset, g.rings),
+        };
     }
     if let Some(g) = &spec.panel {
         let angles = g.degrees.map(f64::to_radians);

@@ -36,3 +36,22 @@ pub fn spherical_cap(angle: f64, hole_angle: f64, rings: usize) -> f64 {
     let [mean, half] = [angle + hole_angle, angle - hole_angle].map(|x| (0.5 * x).sin());
     4.0 * TAU * mean * half / (step * step) + 12.0 * rings as f64
 }
+
+/// Rings of triangles in the band of [`inset_cap`](super::inset_cap).
+pub(super) fn inset_bands(
+    radius: f64,
+    angle: f64,
+    hole_angle: f64,
+    inset: f64,
+    rings: usize,
+) -> f64 {
+    let spacing = radius * (angle - hole_angle) / rings as f64;
+    (inset / spacing).round().max(1.0)
+}
+
+/// Of [`inset_cap`](super::inset_cap), about.
+pub fn inset_cap(radius: f64, angle: f64, hole_angle: f64, inset: f64, rings: usize) -> f64 {
+    let around = TAU * angle.sin() * rings as f64 / (angle - hole_angle);
+    let band = 2.0 * around.max(6.0) * inset_bands(radius, angle, hole_angle, inset, rings);
+    spherical_cap(angle, hole_angle, rings) + band
+}

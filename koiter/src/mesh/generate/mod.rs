@@ -5,6 +5,7 @@
 
 mod delaunay;
 pub mod face_count;
+mod inset_cap;
 mod irregular;
 mod patch;
 mod random_sphere;
@@ -17,6 +18,7 @@ mod split_mix;
 mod vee;
 
 pub use delaunay::delaunay;
+pub use inset_cap::inset_cap;
 pub use irregular::{IRREGULAR_MIN_ANGLE_DEGREES, irregular};
 pub use patch::{cylinder_panel, sphere_zone};
 pub use random_sphere::random_sphere;

@@ -146,6 +146,17 @@ pub fn spherical_cap(
     hole_angle: Option<f64>,
     rings: usize,
 ) -> Result<Surface, GeneratorError> {
+    let (positions, faces) = join_rings(&cap_rings(radius, angle, hole_angle, rings)?);
+    build(positions, faces)
+}
+
+/// The rings of [`spherical_cap`], from the rim.
+pub(super) fn cap_rings(
+    radius: f64,
+    angle: f64,
+    hole_angle: Option<f64>,
+    rings: usize,
+) -> Result<Vec<Ring>, GeneratorError> {
     check_positive("radius of the cap", radius)?;
     check_between("polar angle of the cap in radians", angle, 0.0, PI)?;
     if let Some(hole) = hole_angle {
@@ -165,8 +176,7 @@ pub fn spherical_cap(
             count: if is_pole { 1 } else { count },
         }
     };
-    let (positions, faces) = join_rings(&(0..=rings).rev().map(ring).collect::<Vec<_>>());
-    build(positions, faces)
+    Ok((0..=rings).rev().map(ring).collect())
 }
 
 /// A torus about the z axis: a tube of `minor_radius` [m] whose centre runs on a circle of `major_radius`, normals

@@ -270,6 +270,9 @@ pub struct CapSpec {
     /// Angle from the pole to the rim of a hole [°].
     #[serde(default)]
     pub hole_degrees: Option<f64>,
+    /// Width [m] of a flat band from the rim towards the axis; default: none.
+    #[serde(default)]
+    pub inset: Option<f64>,
     /// Rings of triangles.
     pub rings: usize,
 }
