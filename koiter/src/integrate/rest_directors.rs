@@ -30,7 +30,8 @@ impl ConfigurationSpace for Scaled {
 /// Angles are found to this accuracy [rad]: the energy's error is its square.
 const TOLERANCE: f64 = 1e-10;
 
-/// Moves the directors, the unknowns in `range`, to a minimum of `bending`; everything else in `q` stays.
+/// Moves the directors, the unknowns in `range`, to a minimum of `bending`; everything else in `q` stays, and the unknowns
+/// in `held` take the values there.
 ///
 /// # Errors
 /// [`RestError::Directors`] if Newton's method does not converge.
@@ -38,13 +39,34 @@ pub fn relax_directors(
     bending: &mut dyn Energy,
     layout: &DofLayout,
     range: Range<usize>,
+    held: &[(usize, f64)],
     q: &mut [f64],
 ) -> Result<(), RestError> {
-    let positions = q.to_vec();
-    if let Some(mut held) = bending.at_held_positions(&positions, layout) {
-        return relax(vec![held.as_mut()], layout, range, 1.0, q, find_directors);
+    for &(dof, value) in held {
+        q[dof] = value;
     }
-    relax(vec![bending], layout, range, 1.0, q, find_directors)
+    let mut is_fixed = all_but(layout, range);
+    for &(dof, _) in held {
+        is_fixed[dof] = true;
+    }
+    let positions = q.to_vec();
+    if let Some(mut cheaper) = bending.at_held_positions(&positions, layout) {
+        return relax(
+            vec![cheaper.as_mut()],
+            layout,
+            &is_fixed,
+            1.0,
+            q,
+            find_directors,
+        );
+    }
+    relax(vec![bending], layout, &is_fixed, 1.0, q, find_directors)
+}
+
+fn all_but(layout: &DofLayout, range: Range<usize>) -> Vec<bool> {
+    let mut is_fixed = vec![true; layout.num_solved_dofs()];
+    is_fixed[range].fill(false);
+    is_fixed
 }
 
 /// Moves the points of edges, the unknowns in `range`, until the sum of `energies` no longer falls by more than 5 % in
@@ -63,13 +85,14 @@ pub fn relax_edge_points(
         .iter_mut()
         .map(|e| &mut **e as &mut dyn Energy)
         .collect();
-    relax(energies, layout, range, edge_length, q, find_points)
+    let is_fixed = all_but(layout, range);
+    relax(energies, layout, &is_fixed, edge_length, q, find_points)
 }
 
 fn relax<'a>(
     energies: Vec<&'a mut (dyn Energy + 'a)>,
     layout: &DofLayout,
-    range: Range<usize>,
+    is_fixed: &[bool],
     unit: f64,
     q: &mut [f64],
     find_minimum: fn(&mut Problem<'_>, &mut [f64]) -> Result<(), String>,
@@ -78,18 +101,17 @@ fn relax<'a>(
     for energy in &energies {
         energy.add_gradient(q, &mut gradient);
     }
-    if gradient[range.clone()].iter().all(|moment| *moment == 0.0) {
+    let mut free = gradient.iter().zip(is_fixed).filter(|(_, fixed)| !**fixed);
+    if free.all(|(moment, _)| *moment == 0.0) {
         // A flat sheet: nothing to solve for, and the factorisation would be the largest cost of reading a scene.
         return Ok(());
     }
-    let mut is_fixed = vec![true; layout.num_solved_dofs()];
-    is_fixed[range].fill(false);
     let target = q.to_vec();
     let mut problem = Problem {
         energies: energies.into_iter().map(|e| e as &mut dyn Energy).collect(),
         layout,
         space: &Scaled { unit },
-        is_fixed: &is_fixed,
+        is_fixed,
         target: &target,
     };
     find_minimum(&mut problem, q).map_err(|reason| RestError::Directors { reason })

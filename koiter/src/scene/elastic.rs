@@ -8,6 +8,7 @@ use super::assemble::{BuildError, Unknowns, write_points};
 use super::composition::{Composed, CompositionError};
 use super::model::{BendingModel, Model, Shell};
 use super::position_bending::PositionBending;
+use super::symmetry::held_directors;
 use super::vertex_directors::kirchhoff_bending;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
@@ -42,7 +43,8 @@ impl Elastic {
             parts: Vec::new(),
         };
         let firsts = unknowns.vertices.iter().zip(&unknowns.extras);
-        for (shell, (&first_vertex, &first_extra)) in model.shells.iter().zip(firsts) {
+        for (index, (&first_vertex, &first_extra)) in firsts.enumerate() {
+            let shell = &model.shells[index];
             let part = shell_part(shell, first_vertex, first_extra).map_err(|error| {
                 BuildError::Composition {
                     shell: shell.name.clone(),
@@ -50,8 +52,9 @@ impl Elastic {
                 }
             })?;
             elastic.add_strain_limit(shell, &part, &unknowns.layout, q)?;
+            let held = |part: &ShellPart, q: &[f64]| held_directors(model, index, part, q);
             elastic
-                .add(shell, part, &unknowns.layout, q)
+                .add(shell, part, &held, &unknowns.layout, q)
                 .map_err(|error| BuildError::Rest {
                     shell: shell.name.clone(),
                     error,
@@ -94,6 +97,7 @@ impl Elastic {
         &mut self,
         shell: &Shell,
         mut part: ShellPart,
+        held: &HeldDirectors<'_>,
         layout: &DofLayout,
         q: &mut [f64],
     ) -> Result<(), RestError> {
@@ -107,7 +111,7 @@ impl Elastic {
         );
         self.energies
             .push(Box::new(Assembled::new(membrane, layout)));
-        let bending = bending_energy(shell, &mut part, layout, q, masses)?;
+        let bending = bending_energy(shell, &mut part, held, layout, q, masses)?;
         self.energies.extend(bending);
         if shell.rest_curved && part.extra == ExtraUnknowns::None {
             // Without directors the forms are for display only, by bisectors at rest as deformed.
@@ -123,20 +127,24 @@ impl Elastic {
     }
 }
 
+/// Which directors of a shell are held at the positions of a configuration, and their values.
+pub(super) type HeldDirectors<'a> = dyn Fn(&ShellPart, &[f64]) -> Vec<(usize, f64)> + 'a;
+
 /// The bending energy of a shell by its model.
 fn bending_energy(
     shell: &Shell,
     part: &mut ShellPart,
+    held: &HeldDirectors<'_>,
     layout: &DofLayout,
     q: &mut [f64],
     masses: &mut [f64],
 ) -> Result<Vec<Box<dyn Energy>>, RestError> {
     let positions = |part| PositionBending::new(shell, part, layout);
     let energy = match shell.bending {
-        BendingModel::Bac => director_bending::<Tangent>(shell, part, layout, q, masses)?,
-        BendingModel::Dcs => director_bending::<Sine>(shell, part, layout, q, masses)?,
-        BendingModel::Dso => director_bending::<Identity>(shell, part, layout, q, masses)?,
-        BendingModel::Dkt => Some(kirchhoff_bending(shell, part, layout, q, masses)?),
+        BendingModel::Bac => director_bending::<Tangent>(shell, part, held, layout, q, masses)?,
+        BendingModel::Dcs => director_bending::<Sine>(shell, part, held, layout, q, masses)?,
+        BendingModel::Dso => director_bending::<Identity>(shell, part, held, layout, q, masses)?,
+        BendingModel::Dkt => Some(kirchhoff_bending(shell, part, held, layout, q, masses)?),
         BendingModel::MeAverage => Some(positions(part).mid_edge_average()),
         BendingModel::DsTheta => Some(positions(part).discrete_shells::<Identity>()),
         BendingModel::DsTan => Some(positions(part).discrete_shells::<Tangent>()),
@@ -235,6 +243,7 @@ fn add_vertex_masses(shell: &Shell, part: &ShellPart, masses: &mut [f64]) {
 fn director_bending<P: AngleProfile + 'static>(
     shell: &Shell,
     part: &mut ShellPart,
+    held: &HeldDirectors<'_>,
     layout: &DofLayout,
     q: &mut [f64],
     masses: &mut [f64],
@@ -252,7 +261,14 @@ fn director_bending<P: AngleProfile + 'static>(
     let mut rest_q = q.to_vec();
     write_points(&mut rest_q, part.first_vertex, &shell.rest_positions);
     let mut at_rest = bending(part, flat);
-    relax_directors(&mut at_rest, layout, angles.clone(), &mut rest_q)?;
+    let held_at_rest = held(part, &rest_q);
+    relax_directors(
+        &mut at_rest,
+        layout,
+        angles.clone(),
+        &held_at_rest,
+        &mut rest_q,
+    )?;
     if shell.rest_curved {
         for (face, form) in part.rest_forms.iter_mut().enumerate() {
             *form += (at_rest.local()).second_form(face, &at_rest.gather(face, &rest_q));
@@ -265,7 +281,8 @@ fn director_bending<P: AngleProfile + 'static>(
     let starts_at_rest =
         shell.surface.positions == shell.rest_positions && !shell.has_prescribed_curvature();
     if !starts_at_rest {
-        relax_directors(&mut energy, layout, angles, q).map_err(RestError::of_shape_itself)?;
+        relax_directors(&mut energy, layout, angles, &held(part, q), q)
+            .map_err(RestError::of_shape_itself)?;
     }
     Ok(Some(Box::new(energy)))
 }

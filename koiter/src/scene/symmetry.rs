@@ -6,7 +6,7 @@ use super::model::{BendingModel, Model, SymmetryPlane};
 use crate::Vec3;
 use crate::energy::bending::{ExtraUnknowns, SymmetryEdge, SymmetryEdges};
 use crate::integrate::ShellPart;
-use crate::mesh::EdgeId;
+use crate::mesh::{EdgeId, VertexId};
 
 /// Stiffness that holds directors in the plane, in units of the bending stiffness of the face: half a shell then bends like
 /// a whole one up to about 10⁻⁶.
@@ -35,32 +35,60 @@ pub(super) fn symmetry_edges(
                 shell: shell.name.clone(),
             });
         }
-        if part.extra != ExtraUnknowns::EdgeAngles {
-            continue;
-        }
-        for (edge, face, corner) in edges_on(plane, part) {
-            let stencil = &part.stencils[face];
-            let [a, b, c] = [(corner + 1) % 3, (corner + 2) % 3, corner];
-            let x = part.face_corners(face, q);
-            let along = x[b] - x[a];
-            let altitude = along.cross(&(x[c] - x[a])).norm() / along.norm();
-            let mut normal = Vec3::zeros();
-            normal[plane.axis] = 1.0;
-            if normal.cross(&along).dot(&part.directors(face, q)[corner]) < 0.0 {
-                normal = -normal;
-            }
-            let rigidity = part.section.flexural_rigidity(face);
-            edges.push(SymmetryEdge {
-                corners: [a, b, c].map(|i| stencil.corners[i]),
-                angle: stencil.angles[corner],
-                sign: stencil.signs[corner],
-                normal,
-                stiffness: clamp_stiffness(rigidity, STIFFNESS, along.norm(), altitude),
-                vertices: part.mesh.edges()[edge],
-            });
-        }
+        edges.extend(held_edges(plane, part, q));
     }
     Ok(SymmetryEdges { edges })
+}
+
+/// Those of one plane at the configuration `q`; none without edge angles.
+fn held_edges(plane: &SymmetryPlane, part: &ShellPart, q: &[f64]) -> Vec<SymmetryEdge> {
+    if part.extra != ExtraUnknowns::EdgeAngles {
+        return Vec::new();
+    }
+    let hold = |(edge, face, corner): (usize, usize, usize)| {
+        let stencil = &part.stencils[face];
+        let [a, b, c] = [(corner + 1) % 3, (corner + 2) % 3, corner];
+        let x = part.face_corners(face, q);
+        let along = x[b] - x[a];
+        let altitude = along.cross(&(x[c] - x[a])).norm() / along.norm();
+        let mut normal = Vec3::zeros();
+        normal[plane.axis] = 1.0;
+        if normal.cross(&along).dot(&part.directors(face, q)[corner]) < 0.0 {
+            normal = -normal;
+        }
+        let rigidity = part.section.flexural_rigidity(face);
+        SymmetryEdge {
+            corners: [a, b, c].map(|i| stencil.corners[i]),
+            angle: stencil.angles[corner],
+            sign: stencil.signs[corner],
+            normal,
+            stiffness: clamp_stiffness(rigidity, STIFFNESS, along.norm(), altitude),
+            vertices: part.mesh.edges()[edge],
+        }
+    };
+    edges_on(plane, part).into_iter().map(hold).collect()
+}
+
+/// The directors of the shell with this index that planes of symmetry hold at the positions in `q`: unknowns and values.
+pub(super) fn held_directors(
+    model: &Model,
+    shell: usize,
+    part: &ShellPart,
+    q: &[f64],
+) -> Vec<(usize, f64)> {
+    let mut held = Vec::new();
+    for plane in model.symmetry_planes.iter().filter(|p| p.shell == shell) {
+        held.extend(held_edges(plane, part, q).iter().map(|edge| {
+            let place = |i: usize| edge.corners[i / 3].0 as usize + i % 3;
+            let corners = std::array::from_fn(|i| q[place(i)]);
+            (edge.angle.0 as usize, edge.angle_in_plane(&corners))
+        }));
+        if part.extra == ExtraUnknowns::VertexDirectors {
+            let place = |v: &VertexId| part.first_extra.0 as usize + 3 * v.0 as usize + plane.axis;
+            held.extend(plane.vertices.iter().map(|v| (place(v), 0.0)));
+        }
+    }
+    held
 }
 
 /// Boundary edges with both ends on the plane, each with its face and its corner there.

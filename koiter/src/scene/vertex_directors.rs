@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::assemble::write_points;
-use super::elastic::rest_surface;
+use super::elastic::{HeldDirectors, rest_surface};
 use super::model::Shell;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout, Energy};
@@ -17,6 +17,7 @@ use crate::rest::RestError;
 pub(super) fn kirchhoff_bending(
     shell: &Shell,
     part: &mut ShellPart,
+    held: &HeldDirectors<'_>,
     layout: &DofLayout,
     q: &mut [f64],
     masses: &mut [f64],
@@ -41,7 +42,14 @@ pub(super) fn kirchhoff_bending(
         let mut rest_q = q.to_vec();
         write_points(&mut rest_q, part.first_vertex, &rest.positions);
         write_points(&mut rest_q, part.first_extra, &vertex_normals(&rest));
-        relax_directors(&mut energy, layout, directors.clone(), &mut rest_q)?;
+        let held_at_rest = held(part, &rest_q);
+        relax_directors(
+            &mut energy,
+            layout,
+            directors.clone(),
+            &held_at_rest,
+            &mut rest_q,
+        )?;
         let forms: Vec<[Vector3<f64>; 3]> = (0..num_faces)
             .map(|f| {
                 let of_shape = energy.local().second_forms(f, &energy.gather(f, &rest_q));
@@ -64,7 +72,8 @@ pub(super) fn kirchhoff_bending(
         positions: shell.surface.positions.clone(),
     };
     write_points(q, part.first_extra, &vertex_normals(&start));
-    relax_directors(&mut energy, layout, directors, q).map_err(RestError::of_shape_itself)?;
+    relax_directors(&mut energy, layout, directors, &held(part, q), q)
+        .map_err(RestError::of_shape_itself)?;
     Ok(Box::new(energy))
 }
 

@@ -46,8 +46,22 @@ impl SymmetryEdges {
     /// E of one edge over any numbers.
     pub fn formula<R: Real>(&self, stencil: usize, q: &[R; 10]) -> R {
         let edge = &self.edges[stencil];
+        let corners: &[R; 9] = q.first_chunk().expect("the corners come first");
+        let psi = edge.from_plane(corners) + q[9] * edge.sign;
+        psi * psi * (0.5 * edge.stiffness)
+    }
+}
+
+impl SymmetryEdge {
+    /// The edge angle α [rad] of the director in the plane, for the positions of the corners.
+    pub fn angle_in_plane(&self, corners: &[f64; 9]) -> f64 {
+        -self.sign * self.from_plane(corners)
+    }
+
+    /// β.
+    fn from_plane<R: Real>(&self, q: &[R; 9]) -> R {
         let point = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
-        let m: [R; 3] = std::array::from_fn(|d| R::from(edge.normal[d]));
+        let m: [R; 3] = std::array::from_fn(|d| R::from(self.normal[d]));
         let sub = |p: [R; 3], q: [R; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
         let dot = |p: [R; 3], q: [R; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
         let cross = |p: [R; 3], q: [R; 3]| {
@@ -61,9 +75,7 @@ impl SymmetryEdges {
         let normal = cross(along, sub(point(2), point(0)));
         let r = cross(m, along);
         let length = dot(along, along).sqrt();
-        let beta = (dot(cross(r, normal), along) / length).atan2(dot(r, normal));
-        let psi = beta + q[9] * edge.sign;
-        psi * psi * (0.5 * edge.stiffness)
+        (dot(cross(r, normal), along) / length).atan2(dot(r, normal))
     }
 }
 

@@ -18,6 +18,7 @@ impl Builder<'_> {
                 let shell = self.shell_index(&format!("{path}.shell"), &plane.shell)?;
                 let axis = plane.normal as usize;
                 let vertices = on_plane(&path, plane, &shells[shell].surface)?;
+                check_rest(&path, plane, &shells[shell], &vertices)?;
                 Ok(SymmetryPlane {
                     shell,
                     axis,
@@ -26,6 +27,34 @@ impl Builder<'_> {
             })
             .collect()
     }
+}
+
+/// A curved rest shape must go on as its mirror image too.
+fn check_rest(
+    path: &str,
+    plane: &SymmetrySpec,
+    shell: &Shell,
+    vertices: &[VertexId],
+) -> Result<(), SceneError> {
+    let axis = plane.normal as usize;
+    let place = |v: &VertexId| shell.rest_positions[v.0 as usize][axis];
+    let (low, high) = (vertices.iter().map(place))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+            (l.min(x), h.max(x))
+        });
+    let (from, to) = shell.surface.bounding_box();
+    if !shell.rest_curved || high - low <= 1e-9 * (to - from).norm() {
+        return Ok(());
+    }
+    let message = format!(
+        "the rest shape of shell '{}' has no plane of symmetry where the shell has: its vertices there lie between {low:.4} m and {high:.4} m",
+        plane.shell
+    );
+    Err(SceneError::new(Kind::Conflict, message)
+        .inside(path)
+        .with_help(
+            "turn the rest mesh as the mesh is, use rest = \"flat\", or simulate the whole shell",
+        ))
 }
 
 /// The vertices on the plane, with the tolerance of a selection by box; the shell must lie on one side.

@@ -293,13 +293,6 @@ fn every_kind_of_mistake_has_a_place_and_says_what_to_do() {
             "the bending model 'ds-theta' of shell 'cloth', which has no directors, bends freely",
         ),
         (
-            "[[obstacle]]",
-            "rest = \"mesh\"\n[[symmetry]]\nshell = \"cloth\"\nnormal = \"x\"\nat = 0.5\n[[obstacle]]",
-            Kind::Conflict,
-            8,
-            "shell 'cloth' is curved at rest: its rest directors at a plane of symmetry",
-        ),
-        (
             "dt = 0.1 }",
             "dt = 0.1 }\nsolver.smallest_step = 2.0",
             Kind::OutOfRange,

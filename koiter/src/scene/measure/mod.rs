@@ -114,7 +114,7 @@ impl Measurement<'_> {
                     let edge = self.deformed.mean_edge_length();
                     relax_edge_points(&mut bending, layout, range, edge, &mut q)
                 } else {
-                    relax_directors(bending[0].as_mut(), layout, range, &mut q)
+                    relax_directors(bending[0].as_mut(), layout, range, &[], &mut q)
                 };
                 relaxed.map_err(RestError::of_shape_itself)?;
             }

@@ -16,8 +16,8 @@ use super::material::check_material;
 use super::newmark::check_newmark;
 use super::strain_limit::check_strain_limit;
 use super::{
-    ConstraintSpec, ENERGY_NAMES, FIELD_NAMES, MeshSpec, ProbeQuantity, ProbeSpec, RestSpec,
-    RotationSpec, SceneSpec, SelectSpec, ShellSpec, SymmetrySpec,
+    ConstraintSpec, ENERGY_NAMES, FIELD_NAMES, MeshSpec, ProbeQuantity, ProbeSpec, RotationSpec,
+    SceneSpec, SelectSpec, ShellSpec, SymmetrySpec,
 };
 use crate::scene::document::suggest;
 use crate::scene::error::{SceneError, SceneErrorKind as Kind};
@@ -173,14 +173,6 @@ fn check_constraint(path: &str, constraint: &ConstraintSpec, spec: &SceneSpec) -
 fn check_symmetry(path: &str, plane: &SymmetrySpec, spec: &SceneSpec) -> Checked {
     check_shell_name(&format!("{path}.shell"), &plane.shell, spec)?;
     let shell = spec.shell.iter().find(|shell| shell.name == plane.shell);
-    if let Some(shell) = shell.filter(|shell| shell.rest == RestSpec::Mesh) {
-        let message = format!(
-            "shell '{}' is curved at rest: its rest directors at a plane of symmetry would be those of a free edge",
-            shell.name
-        );
-        return Err(error(Kind::Conflict, path, message)
-            .with_help("simulate the whole shell, or use rest = \"flat\""));
-    }
     match shell.filter(|shell| !shell.bending.knows_symmetry()) {
         None => Ok(()),
         Some(shell) => {
