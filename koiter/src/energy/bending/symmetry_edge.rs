@@ -47,7 +47,7 @@ impl SymmetryEdges {
     pub fn formula<R: Real>(&self, stencil: usize, q: &[R; 10]) -> R {
         let edge = &self.edges[stencil];
         let corners: &[R; 9] = q.first_chunk().expect("the corners come first");
-        let psi = edge.from_plane(corners) + q[9] * edge.sign;
+        let psi = edge.turn_from_plane(corners) + q[9] * edge.sign;
         psi * psi * (0.5 * edge.stiffness)
     }
 }
@@ -55,11 +55,11 @@ impl SymmetryEdges {
 impl SymmetryEdge {
     /// The edge angle α [rad] of the director in the plane, for the positions of the corners.
     pub fn angle_in_plane(&self, corners: &[f64; 9]) -> f64 {
-        -self.sign * self.from_plane(corners)
+        -self.sign * self.turn_from_plane(corners)
     }
 
     /// β.
-    fn from_plane<R: Real>(&self, q: &[R; 9]) -> R {
+    fn turn_from_plane<R: Real>(&self, q: &[R; 9]) -> R {
         let point = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
         let m: [R; 3] = std::array::from_fn(|d| R::from(self.normal[d]));
         let sub = |p: [R; 3], q: [R; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
