@@ -168,7 +168,7 @@ impl Patch {
 
     fn minimise<P: AngleProfile + 'static>(&self, bending: &mut Bending<P>, q: &mut [f64]) {
         let angles = self.angles.0 as usize..q.len();
-        relax_directors(bending, &self.layout, angles, q)
+        relax_directors(bending, &self.layout, angles, &[], q)
             .unwrap_or_else(|e| panic!("{}: {e}", self.name));
     }
 

@@ -380,7 +380,8 @@ fn the_director_clamp_conforms() {
             edges.push(ClampedEdge {
                 apex: stencil.corners[c],
                 across: stencil.across[c],
-                angle: stencil.angles[c],
+                // Models without directors have none.
+                angle: (face > 0).then_some(stencil.angles[c]),
                 sign: stencil.signs[c],
                 ends,
                 director: across_edge.cross(&(ends[1] - ends[0])).normalize(),

@@ -206,7 +206,14 @@ fn cylinder_error<P: AngleProfile + 'static>(cells: usize) -> f64 {
     );
     let mut bending = Assembled::new(bending, &layout);
     assert!(bending.value(&q) > 0.0);
-    relax_directors(&mut bending, &layout, angles.0 as usize..q.len(), &mut q).unwrap();
+    relax_directors(
+        &mut bending,
+        &layout,
+        angles.0 as usize..q.len(),
+        &[],
+        &mut q,
+    )
+    .unwrap();
     let errors = (0..frames.len()).filter(|f| inside[*f]).map(|f| {
         let form = bending.local().second_form(f, &bending.gather(f, &q));
         // Eigenvalues of a symmetric 2 × 2: 1/R around and 0 along.

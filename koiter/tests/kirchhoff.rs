@@ -63,7 +63,7 @@ impl Setup {
 
     fn relax(&self, bending: &mut Bending, q: &mut [f64]) {
         let range = self.directors.0 as usize..q.len();
-        relax_directors(bending, &self.layout, range, q).unwrap();
+        relax_directors(bending, &self.layout, range, &[], q).unwrap();
     }
 }
 

@@ -247,6 +247,42 @@ fn a_moment_bends_a_strip_into_a_full_circle() {
     );
 }
 
+/// Deflection of the tip of a clamped strip under a small load, in units of `F L³ / (3 E I)`.
+fn cantilever_deflection(bending: BendingModel, cells: usize) -> f64 {
+    // Square cells: some models converge on no others.
+    let surface = strip(1.0, 0.1, [cells, cells / 10]);
+    let tip = vertices(&surface, |x| x.x > 1.0 - 1e-9);
+    let clamp = held(vertices(&surface, |x| x.x < 1e-9), [true; 3], true);
+    let force = 1e-6;
+    let down = LoadKind::Point {
+        vertices: tip.clone(),
+        force: Vec3::z() * -force / tip.len() as f64,
+    };
+    let mut model = statics(
+        shell(surface, 0.01, 1e9, bending),
+        vec![clamp],
+        vec![load(down)],
+    );
+    model.shells[0].poissons_ratio = 0.0;
+    let rigidity = 1e9 * 0.1 * 0.01f64.powi(3) / 12.0;
+    -mean_displacement(&solve(model, 1), &tip).z * 3.0 * rigidity / force
+}
+
+#[test]
+fn clamps_hold_normals_where_a_model_has_no_directors() {
+    use BendingModel::{ChEs, ChFs, DsTan, DsTheta, MeAverage, QbCr, QbInt, QbPl};
+    let fine = cantilever_deflection(MeAverage, 40);
+    assert!((fine - 1.0).abs() < 0.02, "{fine}");
+    // Up to three times too stiff, or half as much too soft, on these triangles; unclamped the strip would hang down.
+    for bending in [ChEs, ChFs, DsTan, DsTheta, QbCr, QbInt, QbPl] {
+        let deflection = cantilever_deflection(bending, 20);
+        assert!(
+            deflection > 0.3 && deflection < 2.0,
+            "{bending:?}: {deflection}"
+        );
+    }
+}
+
 /// A plate clamped all around under a dead area load, whole or the quarter x, y ≥ 0 of it with planes of symmetry; the
 /// deflections of the vertices of that quarter. `rise` [m] of its middle at rest.
 fn clamped_plate(bending: BendingModel, is_quarter: bool, rise: f64) -> Vec<(Vec3, Vec3)> {

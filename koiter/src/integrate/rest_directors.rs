@@ -6,7 +6,8 @@ use crate::assembly::{ConfigurationSpace, DofLayout, Energy};
 use crate::rest::RestError;
 use crate::solve::{
     HessianChoice, LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError,
-    TrustRegionOptions, leave_saddle, leave_saddles_by_node, minimize, minimize_in_trust_region,
+    TrustRegionOptions, TrustRegionReport, leave_saddle, leave_saddles_by_node, minimize,
+    minimize_in_trust_region,
 };
 
 /// Directors move by angles; the step is the largest of them [rad]. Points of edges move by lengths, in units of the
@@ -117,18 +118,24 @@ fn relax<'a>(
     find_minimum(&mut problem, q).map_err(|reason| RestError::Directors { reason })
 }
 
-/// A promised fall of the energy that counts as none, relative. Where directors are nearly free, as those of DCS on a
+/// A fall of the energy in a step that counts as none, relative. Where directors are nearly free, as those of DCS on a
 /// crease of a right angle, valleys are flat to fourth order and angles are not to be had; the energy is.
-const DECREMENT: f64 = 1e-7;
+const DECREMENT: f64 = 1e-6;
 
 /// Times that saddles are left: each costs energy, so they come to an end, but no bound is known.
 const MAX_ROUNDS: usize = 20;
 
-/// Factorisations of one descent.
+/// Factorisations of the first descent: smooth surfaces take less than ten. On creases directors topple one after the
+/// other, like dominoes, until those on saddles are turned off all at once.
+const FIRST_FACTORIZATIONS: usize = 30;
+
+/// Factorisations of the others.
 const MAX_FACTORIZATIONS: usize = 500;
 
-/// Iterations of the first descent of directors; and those after which it is looked whether the energy of points of edges
-/// still falls, and how often.
+/// The longest step of a descent [rad].
+const LONGEST_STEP: f64 = std::f64::consts::FRAC_PI_4;
+
+/// Iterations after which it is looked whether the energy of points of edges still falls, and how often.
 const ROUND: usize = 50;
 const MAX_ROUNDS_OF_POINTS: usize = 8;
 
@@ -140,64 +147,67 @@ const NO_FALL_OF_POINTS: f64 = 0.05;
 /// How far directors are turned off the saddles they stand on [rad]: on sharp creases minima lie near right angles.
 const OFF_SADDLE: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Directors that stand on saddles are turned off them, all at once; then what saddles are left, one by one.
+/// From the start directors downhill; where that ends at no minimum, once more with directors turned off their saddles, all
+/// at once. The lower minimum counts.
 fn find_directors(problem: &mut Problem<'_>, q: &mut [f64]) -> Result<(), String> {
-    // Projected, the quadratic energy of DSO took 12 to 37 iterations on small patches: with positions held, elements
-    // are projected for motions that do not happen. Exact, it takes two.
-    let options = NewtonOptions {
-        tolerance: TOLERANCE,
-        max_iterations: ROUND,
-        hessian: HessianChoice::ExactWhereConvex,
-    };
     let mut workspace = LinearWorkspace::default();
-    let in_words = |error: SolveError| error.to_string();
-    match minimize(problem, &options, &mut workspace, q) {
-        Ok(first) if first.converged && first.ends_definite => return Ok(()),
-        // Directors that have turned by a right angle out of both faces have no stiffness left when projected.
-        Ok(_) | Err(SolveError::Indefinite { .. }) => {}
-        Err(error) => return Err(error.to_string()),
+    let first = descend(problem, &mut workspace, FIRST_FACTORIZATIONS, q)?;
+    if first.converged && first.ends_definite {
+        return Ok(());
     }
-    let mut least = (energy(problem, q), q.to_vec());
+    let before = (energy(problem, q), q.to_vec());
     leave_saddles_by_node(problem, &mut workspace, OFF_SADDLE, q).map_err(in_words)?;
-    for round in 0..MAX_ROUNDS {
-        let is_definite = descend(problem, &mut workspace, q)?;
-        let found = energy(problem, q);
-        let gain = least.0 - found;
-        if gain > 0.0 {
-            least = (found, q.to_vec());
+    find_minimum(problem, &mut workspace, q)?;
+    if before.0 < energy(problem, q) {
+        q.copy_from_slice(&before.1);
+        find_minimum(problem, &mut workspace, q)?;
+    }
+    Ok(())
+}
+
+/// Downhill, leaving saddles.
+fn find_minimum(
+    problem: &mut Problem<'_>,
+    workspace: &mut LinearWorkspace,
+    q: &mut [f64],
+) -> Result<(), String> {
+    let mut before = f64::INFINITY;
+    for _ in 0..MAX_ROUNDS {
+        let report = descend(problem, workspace, MAX_FACTORIZATIONS, q)?;
+        if !report.converged {
+            return Err(still_falling(report.factorizations));
         }
-        let is_still = round > 0 && gain <= DECREMENT * found.abs();
-        let mut report = NewtonReport::default();
-        if is_definite
+        let after = energy(problem, q);
+        let is_still = before - after <= DECREMENT * after.abs();
+        before = after;
+        let mut times = NewtonReport::default();
+        if report.ends_definite
             || is_still
-            || !leave_saddle(problem, &mut workspace, TOLERANCE, q, &mut report)
-                .map_err(in_words)?
+            || !leave_saddle(problem, workspace, TOLERANCE, q, &mut times).map_err(in_words)?
         {
             break;
         }
     }
-    q.copy_from_slice(&least.1);
     Ok(())
 }
 
-/// To where the energy no longer falls; whether its Hessian is positive definite there.
 fn descend(
     problem: &mut Problem<'_>,
     workspace: &mut LinearWorkspace,
+    max_factorizations: usize,
     q: &mut [f64],
-) -> Result<bool, String> {
+) -> Result<TrustRegionReport, String> {
     let options = TrustRegionOptions {
         tolerance: TOLERANCE,
         decrement: DECREMENT,
-        max_factorizations: MAX_FACTORIZATIONS,
+        longest_step: LONGEST_STEP,
+        max_factorizations,
     };
-    let report = minimize_in_trust_region(problem, &options, workspace, q)
-        .map_err(|error| error.to_string())?;
-    if report.converged {
-        Ok(report.ends_definite)
-    } else {
-        Err(still_falling(report.factorizations))
-    }
+    minimize_in_trust_region(problem, &options, workspace, q).map_err(in_words)
+}
+
+fn in_words(error: SolveError) -> String {
+    error.to_string()
 }
 
 /// To an energy that no longer falls: the points themselves do not come to rest.

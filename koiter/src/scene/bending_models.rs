@@ -100,7 +100,7 @@ impl BendingModel {
             },
             Self::QbCr => BendingModelInfo {
                 name: "qb-cr",
-                what: "Quadratic bending of hinges: constant Hessian, cheapest; flat rest shapes; does not converge",
+                what: "Quadratic bending of hinges: constant Hessian, fewest entries; flat rest shapes; does not converge",
                 unknowns: ExtraUnknowns::None,
                 source: "better-bending-2026, Eq. 15, after bergou-2006",
             },

@@ -1,6 +1,6 @@
 //! Clamped edges: from constraints to prescribed directors, and along their motions.
 
-use super::model::{Constraint, Model};
+use super::model::{BendingModel, Constraint, Model};
 use super::schedule::MotionPart;
 use super::vertex_directors::HeldDirector;
 use crate::Vec3;
@@ -12,6 +12,10 @@ use crate::mesh::{EdgeId, FaceId};
 /// Stiffness of a clamp, in units of the bending stiffness of its face: the director of a clamped edge is then wrong by
 /// 10⁻⁴ of what the face itself bends, and the matrix is no worse conditioned than by the membrane.
 const STIFFNESS: f64 = 1e4;
+
+/// The same for models without directors: half a cell between a clamped edge and the normal of its face, which bends as the
+/// face would: curvature 2 ψ/a over the distance a/2.
+const HALF_CELL: f64 = 2.0;
 
 /// Where a clamped edge came from.
 #[derive(Clone)]
@@ -85,8 +89,7 @@ pub(super) struct Clamps {
 }
 
 impl Clamps {
-    /// Edges between vertices whose three coordinates a clamping constraint holds, in shells with edge angles, and
-    /// the directors of such vertices.
+    /// Edges between vertices whose three coordinates a clamping constraint holds, and the directors of such vertices.
     pub(super) fn new(model: &Model, parts: &[ShellPart], q: &[f64]) -> (Self, DirectorClamp) {
         let mut sources = Vec::new();
         let mut held_directors = Vec::new();
@@ -94,11 +97,12 @@ impl Clamps {
         let mut edges = Vec::new();
         for (index, constraint) in model.constraints.iter().enumerate() {
             let part = &parts[constraint.shell];
-            if !constraint.clamp_directors || constraint.axes != [true; 3] {
+            let is_membrane = model.shells[constraint.shell].bending == BendingModel::None;
+            if !constraint.clamp_directors || constraint.axes != [true; 3] || is_membrane {
                 continue;
             }
             match part.extra {
-                ExtraUnknowns::EdgeAngles => {}
+                ExtraUnknowns::EdgeAngles | ExtraUnknowns::None => {}
                 ExtraUnknowns::VertexDirectors => {
                     held_directors.extend(
                         constraint.vertices.iter().map(|v| {
@@ -111,15 +115,20 @@ impl Clamps {
                     held_points.extend(HeldPoint::of_constraint(index, constraint, part, q));
                     continue;
                 }
-                ExtraUnknowns::None => continue,
             }
-            for (edge, face, corner) in held_edges(constraint, part) {
+            let has_angles = part.extra == ExtraUnknowns::EdgeAngles;
+            let factor = if has_angles { STIFFNESS } else { HALF_CELL };
+            // Between two faces a model without directors has a hinge already.
+            let of_model = |(edge, ..): &(usize, usize, usize)| {
+                has_angles || part.mesh.is_boundary_edge(EdgeId(*edge as u32))
+            };
+            for (edge, face, corner) in held_edges(constraint, part).into_iter().filter(of_model) {
                 let (start_ends, start_director) = edge_and_director(part, face, corner, q);
                 let along = start_ends[1] - start_ends[0];
                 let apex = part.face_corners(face, q)[corner] - start_ends[0];
                 let altitude = along.cross(&apex).norm() / along.norm();
                 let rigidity = part.section.flexural_rigidity(face);
-                let stiffness = clamp_stiffness(rigidity, STIFFNESS, along.norm(), altitude);
+                let stiffness = clamp_stiffness(rigidity, factor, along.norm(), altitude);
                 let stencil = &part.stencils[face];
                 sources.push(Source {
                     constraint: index,
@@ -132,7 +141,7 @@ impl Clamps {
                 edges.push(ClampedEdge {
                     apex: stencil.corners[corner],
                     across: stencil.across[corner],
-                    angle: stencil.angles[corner],
+                    angle: has_angles.then_some(stencil.angles[corner]),
                     sign: stencil.signs[corner],
                     ends: start_ends,
                     director: start_director,

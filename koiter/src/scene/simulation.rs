@@ -5,7 +5,7 @@ use super::assemble::{Assembly, BuildError, assemble, write_points};
 use super::display::{PartTopology, tessellate};
 use super::holds::Holds;
 use super::loads::set_factors;
-use super::model::{IntegratorKind, Model, Phase};
+use super::model::{BendingModel, IntegratorKind, Model, Phase, Shell};
 use super::phases::phase_of_step;
 use super::symmetry::held_by;
 use crate::Vec3;
@@ -13,7 +13,7 @@ use crate::assembly::{Assembled, Dof, Energy};
 use crate::energy::bending::ExtraUnknowns;
 use crate::integrate::{
     Bdf2, ImplicitEuler, Integrator, LinearStatic, LoadPattern, Memory, Newmark, Prescribed,
-    QuasiStatic, ShellPart, State, StepError, StepReport, System,
+    QuasiStatic, State, StepError, StepReport, System,
 };
 
 /// A model with its state, advanced step by step.
@@ -58,13 +58,20 @@ pub(super) const BYTES_A_DOF: usize = 6_000;
 pub(super) const PROGRAM_BYTES: usize = 40_000_000;
 
 /// Entries of the Hessian a face, both triangles, counted on large Delaunay meshes.
-fn nonzeros_a_face(extra: ExtraUnknowns) -> usize {
-    match extra {
-        ExtraUnknowns::None => 58,
-        ExtraUnknowns::EdgeAngles => 166,
+fn nonzeros_a_face(bending: BendingModel) -> usize {
+    match bending {
+        // The membrane alone: 3 × 3 entries for a vertex with itself and six neighbours.
+        BendingModel::None => 31,
+        // Hinges add the six vertices opposite the edges around.
+        BendingModel::QbCr | BendingModel::DsTheta | BendingModel::DsTan | BendingModel::ChEs => 58,
+        // All within two edges.
+        BendingModel::QbPl | BendingModel::QbInt | BendingModel::ChFs | BendingModel::MeAverage => {
+            86
+        }
+        BendingModel::Bac | BendingModel::Dcs | BendingModel::Dso => 166,
         // Six unknowns a vertex, which meets itself and six others.
-        ExtraUnknowns::VertexDirectors => 126,
-        ExtraUnknowns::EdgePoints => 448,
+        BendingModel::Dkt => 126,
+        BendingModel::Ds2nd => 448,
     }
 }
 
@@ -391,8 +398,8 @@ impl Simulation {
             self.model.shells.iter().map(|s| f(&s.surface.mesh)).sum()
         };
         let dofs = self.system.layout.num_solved_dofs();
-        let nonzeros = |part: &ShellPart| part.mesh.num_faces() * nonzeros_a_face(part.extra);
-        let hessian_nonzeros = self.system.space.shells.iter().map(nonzeros).sum();
+        let nonzeros = |s: &Shell| s.surface.mesh.num_faces() * nonzeros_a_face(s.bending);
+        let hessian_nonzeros = self.model.shells.iter().map(nonzeros).sum();
         let mut energies: Vec<&'static str> =
             self.energies().into_iter().map(|(name, _)| name).collect();
         energies.dedup();

@@ -369,6 +369,7 @@ mod tests {
         let options = TrustRegionOptions {
             tolerance: 1e-9,
             decrement: 0.0,
+            longest_step: 1.0,
             max_factorizations: 100,
         };
         // The second has an unknown without stiffness of its own at the start, so no multiple of its diagonal will do;
@@ -398,6 +399,7 @@ mod tests {
         let options = TrustRegionOptions {
             tolerance: 1e-9,
             decrement: 0.0,
+            longest_step: 1.0,
             max_factorizations: 100,
         };
         on_well(PLAIN_WELL, [false; 2], |problem, workspace| {

@@ -5,6 +5,8 @@
 //! ratio of the energy's fall to what the step promised (Moré 1978), and is zero near a minimum. Projected Hessians are
 //! too stiff there: what two elements share may have no curvature at all, although each of them has.
 
+use std::collections::VecDeque;
+
 use super::newton::{Problem, SolveError};
 use super::saddle::assemble_exact;
 use super::workspace::{LinearWorkspace, mean_size};
@@ -14,8 +16,11 @@ use super::workspace::{LinearWorkspace, mean_size};
 pub struct TrustRegionOptions {
     /// Largest step at which the state counts as converged, as the problem's space measures it.
     pub tolerance: f64,
-    /// Promised fall of the energy, relative to it, at which the state counts as converged.
+    /// Fall of the energy a step, relative to it, that counts as none if ten steps in a row have no more: in valleys that are
+    /// flat to fourth order unknowns are not to be had, but the energy is.
     pub decrement: f64,
+    /// Longest step, as the problem's space measures it: periodic energies let any length pass.
+    pub longest_step: f64,
     /// Largest number of factorisations.
     pub max_factorizations: usize,
 }
@@ -42,6 +47,9 @@ const FACTOR: f64 = 4.0;
 /// Ratios of the energy's fall to the promised one: below the first a step is refused, above the second λ decays.
 const RATIOS: [f64; 2] = [0.1, 0.7];
 
+/// Steps over which the energy must fall.
+const LAST_STEPS: usize = 10;
+
 /// Relative round-off of an energy: falls below it cannot be told from none.
 const ROUND_OFF: f64 = 1e-13;
 
@@ -59,6 +67,7 @@ pub fn minimize_in_trust_region(
     let mut shift = Shift::default();
     let mut energy = value(problem, q);
     let mut trial = vec![0.0; q.len()];
+    let mut energies = VecDeque::from([energy]);
     loop {
         for energy in &mut problem.energies {
             energy.begin_iteration(q);
@@ -82,30 +91,39 @@ pub fn minimize_in_trust_region(
                 continue;
             }
             let (direction, promised) = step(problem, workspace, &gradient, &scale, shift.now);
+            let length = problem.space.displacement(q, &direction);
+            if length > options.longest_step && shift.grow() {
+                continue;
+            }
             problem.space.retract(q, &direction, &mut trial);
             let fall = energy - value(problem, &trial);
             let ratio = (fall + ROUND_OFF * energy.abs()) / (promised + ROUND_OFF * energy.abs());
             // NaN is refused too.
             let accepted = ratio >= RATIOS[0];
-            if accepted {
-                q.copy_from_slice(&trial);
-                energy -= fall;
+            if !accepted {
+                // Beyond the largest shift there is only round-off left.
+                if shift.grow() {
+                    continue;
+                }
+                return Ok(report);
             }
-            let small = problem.space.displacement(q, &direction) < options.tolerance
-                || promised <= options.decrement * energy.abs();
-            if small {
+            q.copy_from_slice(&trial);
+            energy -= fall;
+            energies.push_back(energy);
+            let is_still = energies.len() > LAST_STEPS
+                && energies.pop_front().is_some_and(|before| {
+                    before - energy <= LAST_STEPS as f64 * options.decrement * energy.abs()
+                });
+            if length < options.tolerance || is_still {
                 report.converged = true;
                 report.ends_definite = shift.now == 0.0
                     || (workspace.factorize_with(&diagonal, &scale, 0.0, problem.is_fixed)).is_ok();
                 return Ok(report);
             }
-            if accepted {
-                if ratio > RATIOS[1] {
-                    shift.decay();
-                }
-                break;
+            if ratio > RATIOS[1] {
+                shift.decay();
             }
-            shift.grow();
+            break;
         }
     }
 }

@@ -25,8 +25,8 @@ pub struct ClampedEdge {
     pub apex: Dof,
     /// Apex of the other face.
     pub across: Option<Dof>,
-    /// The edge angle.
-    pub angle: Dof,
+    /// The edge angle; a model without directors has none: there it is the normal of the face that is held.
+    pub angle: Option<Dof>,
     /// ε of the edge in the face.
     pub sign: f64,
     /// Prescribed positions of the ends, in the face's traversal [m].
@@ -161,7 +161,7 @@ impl LocalEnergy<7, 3> for DirectorClamp {
 
     fn nodes(&self, stencil: usize) -> [Option<Dof>; 3] {
         let edge = &self.edges[stencil];
-        [Some(edge.apex), edge.across, Some(edge.angle)]
+        [Some(edge.apex), edge.across, edge.angle]
     }
 
     fn value(&self, stencil: usize, q: &SVector<f64, 7>) -> f64 {

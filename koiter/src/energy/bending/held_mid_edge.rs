@@ -104,3 +104,62 @@ impl<P: AngleProfile, S: Section> LocalEnergy<3, 3> for HeldMidEdge<'_, P, S> {
         self.bending.describe(stencil)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::bending::{Sine, Tangent, bending_stencils};
+    use crate::material::{Homogeneous, StVenantKirchhoff};
+    use crate::mesh::generate::{GridDiagonals, grid};
+    use crate::rest::rest_frames;
+
+    fn compare<P: AngleProfile>() {
+        let mut surface = grid(1.0, 1.0, 2, 2, GridDiagonals::Checkerboard).unwrap();
+        let frames = rest_frames(&surface).unwrap();
+        for x in &mut surface.positions {
+            x.z = 0.2 * (3.0 * x.x + x.y).sin();
+        }
+        let num_faces = surface.mesh.num_faces();
+        let first_angle = Dof(3 * surface.mesh.num_vertices() as u32);
+        let bending = MidEdgeBending::<P, _>::new(
+            bending_stencils(&surface.mesh, Dof(0), first_angle),
+            frames,
+            vec![Vector3::new(0.3, -0.2, 0.1); num_faces],
+            Homogeneous::uniform(StVenantKirchhoff::new(1e6, 0.3), 0.01, num_faces),
+        );
+        let positions: Vec<f64> = surface.positions.iter().flatten().copied().collect();
+        let unknowns = |face: usize| {
+            let mut q = SVector::<f64, 21>::zeros();
+            for (k, node) in bending.nodes(face).into_iter().enumerate().take(6) {
+                if let Some(Dof(start)) = node {
+                    let x = &positions[start as usize..start as usize + 3];
+                    q.fixed_rows_mut::<3>(3 * k).copy_from_slice(x);
+                }
+            }
+            for c in 0..3 {
+                q[18 + c] = 0.3 * (f64::from(bending.angles(face)[c].0)).sin();
+            }
+            q
+        };
+        let edges = (0..num_faces).map(|face| bending.held_edges(face, unknowns(face)));
+        let held = HeldMidEdge::new(&bending, edges.collect());
+        for face in 0..num_faces {
+            let q = unknowns(face);
+            let angles: SVector<f64, 3> = q.fixed_rows::<3>(18).into_owned();
+            let (whole, part) = (bending.hessian(face, &q), held.hessian(face, &angles));
+            assert!((whole.value - part.value).abs() < 1e-12 * whole.value);
+            let gradient = whole.gradient.fixed_rows::<3>(18) - part.gradient;
+            assert!(gradient.norm() < 1e-12 * whole.gradient.norm());
+            let hessian = whole.hessian.fixed_view::<3, 3>(18, 18) - part.hessian;
+            assert!(hessian.norm() < 1e-12 * whole.hessian.norm());
+            let clamped = held.projected_hessian(face, &angles, 0.0).hessian;
+            assert!(clamped.symmetric_eigenvalues().min() > -1e-12 * clamped.norm());
+        }
+    }
+
+    #[test]
+    fn derivatives_are_those_with_free_positions() {
+        compare::<Tangent>();
+        compare::<Sine>();
+    }
+}

@@ -19,16 +19,19 @@
 
 use nalgebra::{Matrix3, Matrix3x2, SMatrix, SVector, Vector3};
 
+use super::held_kirchhoff::HeldKirchhoff;
 use super::kirchhoff_form::{BlockMatrix, ByVectors, FormMatrices, Kinematics, VECTORS};
 use crate::Vec3;
-use crate::assembly::{Dof, LocalEnergy, LocalHessian, project_to_psd};
+use crate::assembly::{
+    Assembled, Dof, DofLayout, Energy, LocalEnergy, LocalHessian, parallel_map, project_to_psd,
+};
 use crate::geometry::Real;
 use crate::material::Section;
 use crate::mesh::{Surface, TriMesh};
 use crate::rest::RestFrame;
 
 /// A director this short has lost its direction.
-const SHORTEST_DIRECTOR: f64 = 0.1;
+pub(super) const SHORTEST_DIRECTOR: f64 = 0.1;
 
 /// DKT bending energy of one shell.
 pub struct DiscreteKirchhoff<S> {
@@ -43,12 +46,12 @@ pub struct DiscreteKirchhoff<S> {
 }
 
 /// What the section answers to the nine numbers y of a face.
-struct Answer {
-    value: f64,
+pub(super) struct Answer {
+    pub(super) value: f64,
     /// ∂E/∂y.
-    moments: SVector<f64, 9>,
+    pub(super) moments: SVector<f64, 9>,
     /// ∂²E/∂y².
-    tangent: SMatrix<f64, 9, 9>,
+    pub(super) tangent: SMatrix<f64, 9, 9>,
 }
 
 impl<S: Section> DiscreteKirchhoff<S> {
@@ -90,7 +93,8 @@ impl<S: Section> DiscreteKirchhoff<S> {
         matrices.map(|matrix| matrix * y)
     }
 
-    fn answer(&self, face: usize, at: &Kinematics) -> Answer {
+    /// Of the face's numbers y and the lengths of its directors.
+    pub(super) fn answer(&self, face: usize, y: &SVector<f64, 9>, lengths: &[f64; 3]) -> Answer {
         let weight = self.frames[face].area / 3.0;
         let mut answer = Answer {
             value: 0.0,
@@ -99,15 +103,12 @@ impl<S: Section> DiscreteKirchhoff<S> {
         };
         let matrices = self.matrices.in_frame(&self.frames[face]);
         for (matrix, rest) in matrices.iter().zip(&self.rest_forms[face]) {
-            let response = self
-                .section
-                .bend(face, &(matrix * at.y - rest))
-                .scaled(weight);
+            let response = self.section.bend(face, &(matrix * y - rest)).scaled(weight);
             answer.value += response.density;
             answer.moments += matrix.tr_mul(&response.stress);
             answer.tangent += matrix.tr_mul(&(response.tangent * matrix));
         }
-        for length in at.lengths {
+        for length in lengths {
             answer.value += 0.5 * self.length_stiffness[face] * (length - 1.0).powi(2);
         }
         answer
@@ -128,12 +129,24 @@ impl<S: Section> DiscreteKirchhoff<S> {
         add(1, by_vectors[0]);
         add(2, by_vectors[1]);
         for c in 0..3 {
-            let (unit, length) = (at.units[c], at.lengths[c]);
-            let turning = by_vectors[2 + c] - unit * unit.dot(&by_vectors[2 + c]);
-            let stretching = unit * (self.length_stiffness[face] * (length - 1.0));
-            add(3 + c, turning / length + stretching);
+            add(
+                3 + c,
+                self.director_gradient(face, &at.units[c], at.lengths[c], &by_vectors[2 + c]),
+            );
         }
         gradient
+    }
+
+    /// By a director, from the derivative `w` by its unit vector.
+    pub(super) fn director_gradient(
+        &self,
+        face: usize,
+        unit: &Vec3,
+        length: f64,
+        w: &Vec3,
+    ) -> Vec3 {
+        let turning = w - unit * unit.dot(w);
+        turning / length + unit * (self.length_stiffness[face] * (length - 1.0))
     }
 
     fn derivatives(&self, face: usize, q: &SVector<f64, 18>, kept: f64) -> LocalHessian<18> {
@@ -142,7 +155,7 @@ impl<S: Section> DiscreteKirchhoff<S> {
             value,
             moments,
             tangent,
-        } = self.answer(face, &at);
+        } = self.answer(face, &at.y, &at.lengths);
         let slopes = at.slopes();
         let jacobian =
             SMatrix::<f64, 9, 15>::from_fn(|k, column| slopes[k][column / 3][column % 3]);
@@ -178,18 +191,28 @@ impl<S: Section> DiscreteKirchhoff<S> {
         }
         let mut hessian = by_nodes(|u, v| maps[u].transpose() * block(by_vectors, u, v) * maps[v]);
         for c in 0..3 {
-            let (unit, length, w) = (at.units[c], at.lengths[c], slope[2 + c]);
-            let along = unit.dot(&w);
-            let squared = unit * unit.transpose();
-            let bending = (w * unit.transpose() + unit * w.transpose() + one * along
-                - squared * (3.0 * along))
-                / -length.powi(2);
-            let stiffness = self.length_stiffness[face];
-            let holding = squared + (one - squared) * (1.0 - 1.0 / length);
             let mut part = hessian.fixed_view_mut::<3, 3>(9 + 3 * c, 9 + 3 * c);
-            part += bending + holding * stiffness;
+            part += self.director_curvature(face, &at.units[c], at.lengths[c], &slope[2 + c]);
         }
         hessian
+    }
+
+    /// `w·∂²(d/|d|)`, and the second derivative of what holds the length.
+    pub(super) fn director_curvature(
+        &self,
+        face: usize,
+        unit: &Vec3,
+        length: f64,
+        w: &Vec3,
+    ) -> Matrix3<f64> {
+        let one = Matrix3::identity();
+        let along = unit.dot(w);
+        let squared = unit * unit.transpose();
+        let bending = (w * unit.transpose() + unit * w.transpose() + one * along
+            - squared * (3.0 * along))
+            / -length.powi(2);
+        let holding = squared + (one - squared) * (1.0 - 1.0 / length);
+        bending + holding * self.length_stiffness[face]
     }
 
     /// Positive semidefinite: directors turn within their tangent planes, in two dimensions each.
@@ -221,13 +244,23 @@ impl<S: Section> DiscreteKirchhoff<S> {
         let scale = |u: usize| if u < 2 { 1.0 } else { 1.0 / at.lengths[u - 2] };
         let mut hessian = by_nodes(|u, v| block(&projected, u, v) * (scale(u) * scale(v)));
         for c in 0..3 {
-            let squared = at.units[c] * at.units[c].transpose();
-            let turning = (1.0 - 1.0 / at.lengths[c]).max(0.0);
-            let holding = squared + (Matrix3::identity() - squared) * turning;
             let mut part = hessian.fixed_view_mut::<3, 3>(9 + 3 * c, 9 + 3 * c);
-            part += holding * self.length_stiffness[face];
+            part += self.clamped_holding(face, &at.units[c], at.lengths[c]);
         }
         hessian
+    }
+
+    /// The second derivative of what holds the length, without its negative part.
+    pub(super) fn clamped_holding(&self, face: usize, unit: &Vec3, length: f64) -> Matrix3<f64> {
+        let squared = unit * unit.transpose();
+        let turning = (1.0 - 1.0 / length).max(0.0);
+        (squared + (Matrix3::identity() - squared) * turning) * self.length_stiffness[face]
+    }
+
+    /// The directors of a face.
+    pub(super) fn directors(&self, face: usize) -> [Dof; 3] {
+        let [.., i, j, k] = self.faces[face];
+        [i, j, k]
     }
 
     /// E of one face over any numbers, whose section has the density `density(κ)` [J/m²]: the oracle of the tests.
@@ -313,7 +346,7 @@ pub fn vertex_normals(surface: &Surface) -> Vec<Vec3> {
     sums.into_iter().map(unit).collect()
 }
 
-fn kinematics(q: &SVector<f64, 18>) -> Kinematics {
+pub(super) fn kinematics(q: &SVector<f64, 18>) -> Kinematics {
     let point = |i: usize| Vec3::new(q[3 * i], q[3 * i + 1], q[3 * i + 2]);
     let corners: [Vec3; 3] = std::array::from_fn(point);
     let directors: [Vec3; 3] = std::array::from_fn(|c| point(3 + c));
@@ -361,7 +394,7 @@ fn by_nodes(entry: impl Fn(usize, usize) -> Matrix3<f64>) -> SMatrix<f64, 18, 18
 }
 
 /// Two orthonormal vectors orthogonal to a unit vector.
-fn tangent_plane(unit: &Vec3) -> Matrix3x2<f64> {
+pub(super) fn tangent_plane(unit: &Vec3) -> Matrix3x2<f64> {
     let least = Vec3::ith(unit.iamin(), 1.0);
     let first = unit.cross(&least).normalize();
     Matrix3x2::from_columns(&[first, unit.cross(&first)])
@@ -383,12 +416,13 @@ impl<S: Section> LocalEnergy<18, 6> for DiscreteKirchhoff<S> {
     }
 
     fn value(&self, stencil: usize, q: &SVector<f64, 18>) -> f64 {
-        self.answer(stencil, &kinematics(q)).value
+        let at = kinematics(q);
+        self.answer(stencil, &at.y, &at.lengths).value
     }
 
     fn gradient(&self, stencil: usize, q: &SVector<f64, 18>) -> (f64, SVector<f64, 18>) {
         let at = kinematics(q);
-        let answer = self.answer(stencil, &at);
+        let answer = self.answer(stencil, &at.y, &at.lengths);
         let slope = weighted_sum(&at.slopes(), &answer.moments);
         (answer.value, self.gradient_from(stencil, &at, &slope))
     }
@@ -412,5 +446,18 @@ impl<S: Section> LocalEnergy<18, 6> for DiscreteKirchhoff<S> {
 
     fn describe(&self, stencil: usize) -> String {
         format!("face {stencil}")
+    }
+
+    fn at_held_positions<'a>(
+        &'a self,
+        unknowns: &(dyn Fn(usize) -> SVector<f64, 18> + Sync),
+        layout: &DofLayout,
+    ) -> Option<Box<dyn Energy + 'a>> {
+        let by_directors = parallel_map(self.faces.len(), |face| {
+            let slopes = kinematics(&unknowns(face)).slopes();
+            SMatrix::from_fn(|k, column| slopes[k][2 + column / 3][column % 3])
+        });
+        let held = HeldKirchhoff::new(self, by_directors);
+        Some(Box::new(Assembled::new(held, layout)))
     }
 }

@@ -334,6 +334,19 @@ impl<P: AngleProfile, S: Section> MidEdgeBending<P, S> {
         });
         density(strain) * self.frames[stencil].area
     }
+
+    /// What the positions in `q` contribute to the curvatures of a face.
+    pub(super) fn held_edges(&self, stencil: usize, mut q: SVector<f64, 21>) -> [HeldEdge; 3] {
+        q.fixed_rows_mut::<3>(18).fill(0.0);
+        std::array::from_fn(|c| {
+            let (half_turn, wing, _) = self.tilt(stencil, c, &q);
+            HeldEdge {
+                twice_height: 2.0 * wing.height,
+                half_turn,
+                sign: self.stencils[stencil].signs[c],
+            }
+        })
+    }
 }
 
 fn curvatures_of(corners: &[Corner; 3]) -> Vector3<f64> {
@@ -473,16 +486,7 @@ impl<P: AngleProfile, S: Section> LocalEnergy<21, 9> for MidEdgeBending<P, S> {
         layout: &DofLayout,
     ) -> Option<Box<dyn Energy + 'a>> {
         let edges = parallel_map(self.stencils.len(), |stencil| {
-            let mut q = unknowns(stencil);
-            q.fixed_rows_mut::<3>(18).fill(0.0);
-            std::array::from_fn(|c| {
-                let (half_turn, wing, _) = self.tilt(stencil, c, &q);
-                HeldEdge {
-                    twice_height: 2.0 * wing.height,
-                    half_turn,
-                    sign: self.stencils[stencil].signs[c],
-                }
-            })
+            self.held_edges(stencil, unknowns(stencil))
         });
         Some(Box::new(Assembled::new(
             HeldMidEdge::new(self, edges),

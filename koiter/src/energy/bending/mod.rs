@@ -6,6 +6,7 @@ mod director_clamp;
 mod discrete_shells;
 mod extra_unknowns;
 mod face_bending;
+mod held_kirchhoff;
 mod held_mid_edge;
 mod hinge;
 mod hinge_function;

@@ -9,9 +9,9 @@
 //! [m²], h thickness [m], α, β plane-stress Lamé parameters [Pa]. Interior edges only. Reference: "Better Bending"
 //! (2026), Eqs. (15)–(17), after Bergou et al., "A Quadratic Bending Model for Inextensible Surfaces" (2006).
 //!
-//! The Hessian is constant and positive semidefinite, so it is the cheapest model. At a flat rest state it is the Hessian
-//! of DS(θ), whose energy does not converge under refinement; nor does this one, it is three times too large on regular
-//! meshes. The force against a fold weakens beyond a right angle (group II of the study), so folds collapse. It assumes a
+//! The Hessian is constant and positive semidefinite, and it has the fewest entries of all models. At a flat rest state it
+//! is the Hessian of DS(θ), whose energy does not converge under refinement; nor does this one, it is three times too large
+//! on regular meshes. The force against a fold weakens beyond a right angle (group II of the study), so folds collapse. It assumes a
 //! flat rest shape and small stretch: curvature of a rest shape is ignored.
 
 use nalgebra::{SMatrix, SVector};

@@ -28,6 +28,9 @@ pub enum Trend {
 /// condition that it also falls from the last mesh but one to the last.
 const SLOWEST_RATE: f64 = -0.25;
 
+/// Below this relative error there is only what directors are found to and the digits of the exact value.
+const NEGLIGIBLE: f64 = 1e-6;
+
 /// Above this relative error nothing is said to converge, however it falls: the models that do not converge are off by
 /// more in their limits, and begin with larger errors.
 const LARGEST_ERROR: f64 = 0.1;
@@ -48,7 +51,7 @@ impl Refinement {
             return Trend::Open;
         }
         let falls = self.rate < SLOWEST_RATE && self.last_rate < 0.0;
-        if falls && self.error < LARGEST_ERROR {
+        if self.error < NEGLIGIBLE || falls && self.error < LARGEST_ERROR {
             Trend::Converges
         } else if falls && self.last_rate < SLOWEST_RATE {
             Trend::Open
@@ -93,6 +96,8 @@ mod tests {
         assert!((first_order.rate + 0.5).abs() < 1e-12);
         assert_eq!(first_order.trend(), Trend::Converges);
         assert_eq!(Refinement::of(&power(3.0, -0.1)).trend(), Trend::Stays);
+        let at_the_last_digit = [(100, 3e-6), (400, 2e-8), (1600, 3e-8)];
+        assert_eq!(Refinement::of(&at_the_last_digit).trend(), Trend::Converges);
         let constant = [(100, 0.02), (400, 0.021), (1600, 0.019)];
         assert_eq!(Refinement::of(&constant).trend(), Trend::Stays);
     }
