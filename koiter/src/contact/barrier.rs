@@ -1,13 +1,14 @@
-//! The logarithmic barrier.
+//! The logarithmic barrier ([`crate::geometry::log_barrier`]) of distances.
 //!
 //! ```text
-//! b(s) = −(s/ŝ − 1)² ln(s/ŝ)   for 0 < s < ŝ, else 0
-//! s = d² − ξ²,   ŝ = (ξ + d̂)² − ξ²
+//! b(s/ŝ),   s = d² − ξ²,   ŝ = (ξ + d̂)² − ξ²
 //! ```
 //!
 //! d distance of the midsurfaces [m], ξ distance at which the surfaces touch [m], d̂ gap at which the barrier begins [m].
 //! b is dimensionless and twice continuously differentiable at ŝ; it goes to infinity as the surfaces touch. Reference:
 //! "Codimensional IPC" (2021), Eq. (13), scaled by ŝ².
+
+use crate::geometry::log_barrier;
 
 /// The barrier of pairs that touch at one distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,31 +43,15 @@ impl LogBarrier {
     /// b; infinite where surfaces touch or overlap.
     #[inline]
     pub fn value(&self, distance_squared: f64) -> f64 {
-        let ratio = self.excess(distance_squared) / self.range;
-        if ratio >= 1.0 {
-            0.0
-        } else if ratio > 0.0 {
-            -(ratio - 1.0).powi(2) * ratio.ln()
-        } else {
-            f64::INFINITY
-        }
+        log_barrier(self.excess(distance_squared) / self.range)[0]
     }
 
     /// b, ∂b/∂D and ∂²b/∂D² with respect to the squared distance D.
     #[inline]
     pub fn derivatives(&self, distance_squared: f64) -> [f64; 3] {
-        let ratio = self.excess(distance_squared) / self.range;
-        if ratio >= 1.0 {
-            return [0.0; 3];
-        }
-        if !(ratio > 0.0) {
-            return [f64::INFINITY, f64::NAN, f64::NAN];
-        }
-        let (log, below) = (ratio.ln(), ratio - 1.0);
-        let first = -2.0 * below * log - below * below / ratio;
-        let second = -2.0 * log - 4.0 * below / ratio + (below / ratio).powi(2);
+        let [value, first, second] = log_barrier(self.excess(distance_squared) / self.range);
         [
-            -below * below * log,
+            value,
             first / self.range,
             second / (self.range * self.range),
         ]

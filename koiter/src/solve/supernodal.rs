@@ -1,6 +1,6 @@
 //! Supernodal Cholesky factorisation by the crate `faer`: the reference for our own.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -55,46 +55,93 @@ impl Analysis {
     }
 }
 
-/// Supernodal Cholesky by faer, on one thread: its own parallelism inside small dense kernels costs more than it gains.
+/// The numbers of a factor with the analysis they belong to and the memory they take to compute, for faer's
+/// decompositions of one structure.
 #[derive(Default)]
-pub struct Supernodal {
+pub(super) struct Factor {
     analysis: Option<Analysis>,
     values: Vec<f64>,
     memory: Option<MemBuffer>,
 }
 
-impl SparseCholesky for Supernodal {
-    fn analyze(&mut self, pattern: &Pattern, ordering: &NodeOrdering) {
+impl Factor {
+    /// Prepares for matrices of `pattern`; `scratch` is what a factorisation needs.
+    pub(super) fn analyze(
+        &mut self,
+        pattern: &Pattern,
+        ordering: &NodeOrdering,
+        scratch: impl FnOnce(&SymbolicCholesky<u32>) -> StackReq,
+    ) {
         let analysis = Analysis::new(pattern, ordering);
-        let symbolic = &analysis.symbolic;
-        let factor = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        self.memory = Some(MemBuffer::new(factor));
+        self.memory = Some(MemBuffer::new(scratch(&analysis.symbolic)));
         self.values.clear();
-        self.values.resize(symbolic.len_val(), 0.0);
+        self.values.resize(analysis.symbolic.len_val(), 0.0);
         self.analysis = Some(analysis);
     }
 
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// # Panics
+    /// If nothing was analysed.
+    pub(super) fn analysis(&self) -> &Analysis {
+        (self.analysis.as_ref()).expect("analyze comes before all else")
+    }
+
+    /// What a factorisation reads and writes.
+    ///
+    /// # Panics
+    /// If nothing was analysed.
+    pub(super) fn parts(&mut self) -> (&Analysis, &mut [f64], &mut MemStack) {
+        let both = self.analysis.as_ref().zip(self.memory.as_mut());
+        let (analysis, memory) = both.expect("analyze comes before factorize");
+        (analysis, &mut self.values, MemStack::new(memory))
+    }
+
+    /// Solves for the columns of `rhs` by `solve`.
+    pub(super) fn solve(
+        &self,
+        rhs: &mut [f64],
+        solve: impl FnOnce(&SymbolicCholesky<u32>, &[f64], MatMut<'_, f64>, &mut MemStack),
+    ) {
+        let analysis = self.analysis();
+        let n = analysis.new_to_old.len();
+        let width = rhs.len() / n.max(1);
+        let scratch = (analysis.symbolic).solve_in_place_scratch::<f64>(width, Par::Seq);
+        solve(
+            &analysis.symbolic,
+            &self.values,
+            MatMut::from_column_major_slice_mut(rhs, n, width),
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
+    }
+}
+
+/// Supernodal Cholesky by faer, on one thread: its own parallelism inside small dense kernels costs more than it gains.
+#[derive(Default)]
+pub struct Supernodal(Factor);
+
+impl SparseCholesky for Supernodal {
+    fn analyze(&mut self, pattern: &Pattern, ordering: &NodeOrdering) {
+        (self.0).analyze(pattern, ordering, |symbolic| {
+            symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default())
+        });
+    }
+
     fn factor_entries(&self) -> usize {
-        self.values.len()
+        self.0.values().len()
     }
 
     fn factorize(&mut self, matrix: &SymmetricMatrix) -> Result<(), NotPositiveDefinite> {
-        let analysis = self
-            .analysis
-            .as_ref()
-            .expect("analyze comes before factorize");
-        let memory = self
-            .memory
-            .as_mut()
-            .expect("analyze comes before factorize");
-        let view = SparseColMatRef::new(structure(&matrix.pattern), &matrix.values);
+        let (analysis, values, memory) = self.0.parts();
         let result = analysis.symbolic.factorize_numeric_llt(
-            &mut self.values,
-            view,
+            values,
+            SparseColMatRef::new(structure(&matrix.pattern), &matrix.values),
             Side::Lower,
             LltRegularization::default(),
             Par::Seq,
-            MemStack::new(memory),
+            memory,
             Default::default(),
         );
         match result {
@@ -104,17 +151,9 @@ impl SparseCholesky for Supernodal {
     }
 
     fn solve(&mut self, rhs: &mut [f64]) {
-        let analysis = self.analysis.as_ref().expect("analyze comes before solve");
-        let symbolic = &analysis.symbolic;
-        let n = analysis.new_to_old.len();
-        let width = rhs.len() / n.max(1);
-        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(width, Par::Seq));
-        LltRef::new(symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(rhs, n, width),
-            Par::Seq,
-            MemStack::new(&mut memory),
-        );
+        (self.0).solve(rhs, |symbolic, values, rhs, memory| {
+            LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, rhs, Par::Seq, memory);
+        });
     }
 }
 
