@@ -1,6 +1,7 @@
 //! What can be typed.
 
 mod aids;
+mod modes;
 mod studies;
 mod validation;
 
@@ -9,6 +10,7 @@ pub(crate) use aids::{
     Template,
 };
 
+pub(crate) use modes::ModesArguments;
 pub(crate) use studies::{
     ConvergenceArguments, CreasedVeeArguments, DirectorSource, EnergyArguments, RestCurvature,
     bending_models,
@@ -73,6 +75,8 @@ and others) complete its keys and mark mistakes.")]
     Man(ManArguments),
     /// Prints the membrane and bending energies of a mesh under any model.
     Energy(EnergyArguments),
+    /// Natural frequencies or buckling loads of a scene's structure, and their shapes.
+    Modes(ModesArguments),
     /// Computes published shell problems and compares.
     Validate(ValidateArguments),
     /// Measures what things cost on this machine, and how models compare.

@@ -17,6 +17,7 @@ mod logger;
 mod manual;
 mod memory;
 mod model_style;
+mod modes;
 mod new;
 mod output;
 mod output_path;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Verb::Completions(arguments) => manual::completions(&arguments),
         Verb::Man(arguments) => manual::man(&arguments),
         Verb::Energy(arguments) => energy::energy(&arguments),
+        Verb::Modes(arguments) => modes::modes(&arguments),
         Verb::Validate(arguments) => validate::validate(&arguments),
         Verb::Bench(arguments) => bench::bench(&arguments),
     };

@@ -1,6 +1,7 @@
 //! How a simulated structure vibrates and buckles.
 
 use super::simulation::Simulation;
+use crate::Vec3;
 use crate::integrate::{BucklingMode, LinearError, VibrationMode};
 
 impl Simulation {
@@ -33,5 +34,12 @@ impl Simulation {
         let modes = self.system.buckling_modes(&self.state.q, fixed, count);
         self.apply_schedules(self.state.time);
         modes
+    }
+
+    /// What the vertices of a shell do in a mode whose `shape` is one over the solved unknowns; held shells stand still.
+    pub fn shell_motion(&self, shell: usize, shape: &[f64]) -> Vec<Vec3> {
+        let mut motion = vec![0.0; self.state.q.len()];
+        motion[..shape.len()].copy_from_slice(shape);
+        self.shell_points(shell, &motion)
     }
 }

@@ -267,7 +267,7 @@ impl Simulation {
         self.shell_points(shell, &self.state.velocities)
     }
 
-    fn shell_points(&self, shell: usize, values: &[f64]) -> Vec<Vec3> {
+    pub(super) fn shell_points(&self, shell: usize, values: &[f64]) -> Vec<Vec3> {
         let part = &self.system.space.shells[shell];
         (0..part.mesh.num_vertices())
             .map(|v| part.position(v, values))
