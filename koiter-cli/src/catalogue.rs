@@ -12,35 +12,7 @@ use crate::output::say;
 /// Lists the materials.
 pub(crate) fn materials(arguments: &CatalogueArguments) -> Result<(), Failure> {
     if arguments.json {
-        let all = presets::ALL.map(|preset| {
-            json!({
-                "name": preset.name,
-                "young": preset.youngs_modulus,
-                "poisson": preset.poissons_ratio,
-                "density": preset.density,
-                "thickness": preset.thickness,
-                "remark": preset.remark,
-                "source": preset.source,
-            })
-        });
-        let models = MaterialModel::ALL.map(|model| {
-            let info = model.info();
-            json!({
-                "name": info.name,
-                "what": info.what,
-                "keys": info.keys,
-                "source": info.source,
-            })
-        });
-        say!(
-            "{}",
-            json!({
-                "materials": all,
-                "default": Value::Null,
-                "models": models,
-                "default_model": MaterialModel::default().info().name,
-            })
-        );
+        say!("{}", materials_json());
         return Ok(());
     }
     say!("material         young [Pa]  poisson  density [kg/m³]  thickness [m]  source");
@@ -77,6 +49,35 @@ pub(crate) fn materials(arguments: &CatalogueArguments) -> Result<(), Failure> {
         "a shell names its model, as material = {{ preset = \"latex-rubber\", model = \"neo-hookean\" }}. Sources: docs/references.bib"
     );
     Ok(())
+}
+
+fn materials_json() -> Value {
+    let all = presets::ALL.map(|preset| {
+        json!({
+            "name": preset.name,
+            "young": preset.youngs_modulus,
+            "poisson": preset.poissons_ratio,
+            "density": preset.density,
+            "thickness": preset.thickness,
+            "remark": preset.remark,
+            "source": preset.source,
+        })
+    });
+    let models = MaterialModel::ALL.map(|model| {
+        let info = model.info();
+        json!({
+            "name": info.name,
+            "what": info.what,
+            "keys": info.keys,
+            "source": info.source,
+        })
+    });
+    json!({
+        "materials": all,
+        "default": Value::Null,
+        "models": models,
+        "default_model": MaterialModel::default().info().name,
+    })
 }
 
 /// Lists the bending models.

@@ -11,7 +11,7 @@ mod report;
 mod study;
 
 use koiter::scene::nearest;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use self::case::Case;
 use self::cases::CASES;
@@ -59,24 +59,10 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<(), Failure> {
         }
         studies_of_all.extend(studies.iter().map(|study| study.json(case)));
     }
-    let [within, in_the_limit, outside] = marks;
     if arguments.json {
-        let refused: Vec<_> = (refusals.iter())
-            .map(
-                |(case, model, reason)| json!({ "case": case, "bending": model, "reason": reason }),
-            )
-            .collect();
-        say!(
-            "{}",
-            json!({
-                "studies": studies_of_all,
-                "not_computed": refused,
-                "within": within,
-                "within_in_the_limit": in_the_limit,
-                "outside": outside,
-            })
-        );
+        say!("{}", json(&studies_of_all, &refusals, marks));
     } else {
+        let [within, in_the_limit, outside] = marks;
         say!(
             "\n{within} figures within their tolerance on the finest mesh, {in_the_limit} when extrapolated, {outside} outside"
         );
@@ -91,6 +77,21 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<(), Failure> {
         "not computed: {}",
         studies.join(", ")
     )))
+}
+
+/// Everything for scripts; refusals are case, model and reason, marks the figures of each verdict.
+fn json(studies: &[Value], refusals: &[(&str, &str, String)], marks: [usize; 3]) -> Value {
+    let refused = refusals
+        .iter()
+        .map(|(case, model, reason)| json!({ "case": case, "bending": model, "reason": reason }));
+    let [within, in_the_limit, outside] = marks;
+    json!({
+        "studies": studies,
+        "not_computed": refused.collect::<Vec<_>>(),
+        "within": within,
+        "within_in_the_limit": in_the_limit,
+        "outside": outside,
+    })
 }
 
 /// The cases of a list of names, each once; none and `all` stand for all.

@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{Dof, DofLayout, HessianBuilder, Pattern, PatternBuilder, project_to_psd};
+use crate::geometry::{Jet, Real};
 
 /// What to do with negative curvature of an energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,6 +48,22 @@ impl<const N: usize> LocalHessian<N> {
             hessian: SMatrix::zeros(),
         }
     }
+}
+
+/// The derivatives of a formula over jets.
+impl<const N: usize> From<Jet<N>> for LocalHessian<N> {
+    fn from(jet: Jet<N>) -> Self {
+        Self {
+            value: jet.value(),
+            gradient: SVector::from_fn(|i, _| jet.gradient()[i]),
+            hessian: SMatrix::from_fn(|i, j| jet.hessian(i, j)),
+        }
+    }
+}
+
+/// The unknowns of an element as jets by which to differentiate.
+pub fn variables<const N: usize>(q: &SVector<f64, N>) -> [Jet<N>; N] {
+    std::array::from_fn(|i| Jet::variable(q[i], i))
 }
 
 /// An energy that is a sum over elements of a few unknowns each: Φ(q) = Σ_s φ_s(q_s).

@@ -242,6 +242,7 @@ fn squared_sine_derivatives(x: &[Vec3; 4]) -> (SVector<f64, 12>, SMatrix<f64, 12
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::over_numbers::{cross, dot, sub};
     use crate::geometry::{Jet, Real};
 
     fn check(kind: PairKind, points: [[f64; 3]; 4], threshold: f64) {
@@ -295,17 +296,11 @@ mod tests {
         let x: [[Jet<12>; 3]; 4] = std::array::from_fn(|i| {
             std::array::from_fn(|k| Jet::variable(points[i][k], 3 * i + k))
         });
-        let sub = |p: &[Jet<12>; 3], q: &[Jet<12>; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-        let dot = |p: &[Jet<12>; 3], q: &[Jet<12>; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
         let (u, v, separation) = match kind {
             PairKind::VertexFace => (sub(&x[2], &x[1]), sub(&x[3], &x[1]), sub(&x[0], &x[1])),
             PairKind::EdgeEdge => (sub(&x[1], &x[0]), sub(&x[3], &x[2]), sub(&x[0], &x[2])),
         };
-        let n = [
-            u[1] * v[2] - u[2] * v[1],
-            u[2] * v[0] - u[0] * v[2],
-            u[0] * v[1] - u[1] * v[0],
-        ];
+        let n = cross(&u, &v);
         let along = dot(&separation, &n);
         let distance_squared = along * along / dot(&n, &n);
         let touching = barrier.touching_distance * barrier.touching_distance;

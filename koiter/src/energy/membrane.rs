@@ -16,6 +16,7 @@ use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector3};
 use crate::Vec3;
 use crate::assembly::{Dof, LocalEnergy, LocalHessian, project_to_psd};
 use crate::geometry::Real;
+use crate::geometry::over_numbers::dot;
 use crate::material::{Response, Section};
 use crate::mesh::TriMesh;
 use crate::rest::RestFrame;
@@ -236,7 +237,6 @@ impl<S> Membrane<S> {
         let edge = |c: usize, axis: usize| q[3 * c + axis] - q[axis];
         let f1: [R; 3] = std::array::from_fn(|k| edge(1, k) * m11);
         let f2: [R; 3] = std::array::from_fn(|k| edge(1, k) * m12 + edge(2, k) * m22);
-        let dot = |u: &[R; 3], v: &[R; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
         let strain = [
             (dot(&f1, &f1) - 1.0) * 0.5,
             (dot(&f2, &f2) - 1.0) * 0.5,

@@ -27,6 +27,7 @@ use nalgebra::{Matrix6, SMatrix, SVector};
 
 use crate::Vec3;
 use crate::assembly::{Dof, LocalEnergy, LocalHessian};
+use crate::geometry::over_numbers::dot;
 use crate::geometry::{Real, log_barrier, log_barrier_slope_quotient};
 use crate::mesh::TriMesh;
 use crate::rest::RestFrame;
@@ -339,7 +340,6 @@ impl StrainLimit {
         let edge = |c: usize, axis: usize| q[3 * c + axis] - q[axis];
         let f1: [R; 3] = std::array::from_fn(|k| edge(1, k) * m11);
         let f2: [R; 3] = std::array::from_fn(|k| edge(1, k) * m12 + edge(2, k) * m22);
-        let dot = |u: &[R; 3], v: &[R; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
         let (a, b, c) = (dot(&f1, &f1), dot(&f2, &f2), dot(&f1, &f2));
         let gap = ((a - b) * (a - b) * 0.25 + c * c).sqrt();
         let StretchLimit { stretch, begin, .. } = self.limit;

@@ -12,6 +12,7 @@ mod closest;
 mod crossing;
 mod jet;
 mod log_barrier;
+pub mod over_numbers;
 mod wing;
 
 pub use closest::{

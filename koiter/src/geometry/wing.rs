@@ -114,6 +114,7 @@ pub fn hinge_angle(wing: &Wing, neighbor: &Wing) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::over_numbers::{angle_about, cross, norm, sub};
     use crate::geometry::{Jet, Real};
 
     const POINTS: [[f64; 3]; 4] = [
@@ -135,22 +136,10 @@ mod tests {
 
     /// Altitude of c over a → b and hinge angle of a, b, c, d from their definitions, over any number type.
     fn by_definition<R: Real>(x: &[[R; 3]; 4]) -> (R, R) {
-        let sub = |p: &[R; 3], q: &[R; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-        let dot = |p: &[R; 3], q: &[R; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-        let cross = |p: &[R; 3], q: &[R; 3]| {
-            [
-                p[1] * q[2] - p[2] * q[1],
-                p[2] * q[0] - p[0] * q[2],
-                p[0] * q[1] - p[1] * q[0],
-            ]
-        };
         let e = sub(&x[1], &x[0]);
-        let length = dot(&e, &e).sqrt();
         let n0 = cross(&e, &sub(&x[2], &x[0]));
         let n1 = cross(&sub(&x[3], &x[0]), &e);
-        let height = dot(&n0, &n0).sqrt() / length;
-        let theta = (dot(&cross(&n0, &n1), &e) / length).atan2(dot(&n0, &n1));
-        (height, theta)
+        (norm(&n0) / norm(&e), angle_about(&e, &n0, &n1))
     }
 
     #[test]

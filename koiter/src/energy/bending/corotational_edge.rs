@@ -17,12 +17,13 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector};
 
-use super::hinge::{Hinge, cross, hinges, inner, sub};
+use super::hinge::{Hinge, hinges};
 use super::hinge_function::{DeformedHinge, HingeFunction};
 use super::quadratic_form::QuadraticForm;
 use crate::Vec3;
 use crate::assembly::{Dof, LocalEnergy, LocalHessian};
 use crate::geometry::Real;
+use crate::geometry::over_numbers::{cross, dot, sub};
 use crate::mesh::Surface;
 use crate::rest::RestFrame;
 
@@ -83,14 +84,14 @@ impl CorotationalEdge {
     pub fn formula<R: Real>(&self, stencil: usize, q: &[R; 12]) -> R {
         let hinge = &self.hinges[stencil];
         let x: [[R; 3]; 4] = std::array::from_fn(|i| std::array::from_fn(|axis| q[3 * i + axis]));
-        let unit = |v: [R; 3]| v.map(|entry| entry / inner(&v, &v).sqrt());
+        let unit = |v: [R; 3]| v.map(|entry| entry / dot(&v, &v).sqrt());
         let edge = sub(&x[1], &x[0]);
         let arms = [sub(&x[2], &x[0]), sub(&x[3], &x[0])];
         let n0 = unit(cross(&edge, &arms[0]));
         let n1 = unit(cross(&arms[1], &edge));
         let normal = unit(std::array::from_fn(|axis| n0[axis] + n1[axis]));
         let [a0, a1] = hinge.areas;
-        let kappa = (inner(&normal, &arms[0]) * (0.5 / a0) + inner(&normal, &arms[1]) * (0.5 / a1))
+        let kappa = (dot(&normal, &arms[0]) * (0.5 / a0) + dot(&normal, &arms[1]) * (0.5 / a1))
             * (hinge.length_squared() / hinge.area());
         let offset = kappa + self.rest[stencil];
         offset * offset * (0.5 * stiffness(hinge))

@@ -16,12 +16,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::bending_stencil::BendingStencil;
 use super::face_bending::{FaceBending, FaceLaw, FaceResponse};
-use super::hinge::{cross, inner, sub};
 use super::hinge_function::{DeformedHinge, HingeFunction};
-use super::mid_edge::BendingStencil;
 use crate::Vec3;
 use crate::geometry::Real;
+use crate::geometry::over_numbers::{cross, dot, sub};
 use crate::mesh::Surface;
 use crate::rest::RestFrame;
 
@@ -61,11 +61,11 @@ impl FaceBending<CorotationalFace> {
     pub fn formula<R: Real>(&self, face: usize, q: &[R; 18]) -> R {
         let x = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
         let normal = cross(&sub(&x(1), &x(0)), &sub(&x(2), &x(0)));
-        let length = inner(&normal, &normal).sqrt();
+        let length = dot(&normal, &normal).sqrt();
         let data = &self.law.faces[face];
         // Absent neighbours have the scale 0.
         let kappa: [R; 3] = std::array::from_fn(|c| {
-            inner(&normal, &sub(&x(3 + c), &x(c))) / length * data.scales[c] + data.rest[c]
+            dot(&normal, &sub(&x(3 + c), &x(c))) / length * data.scales[c] + data.rest[c]
         });
         let mut sum = R::from(0.0);
         for (c, d) in (0..9).map(|k| (k / 3, k % 3)) {

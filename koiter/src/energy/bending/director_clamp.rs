@@ -16,6 +16,7 @@ use nalgebra::{SMatrix, SVector};
 use super::quadratic_form::{Functional, QuadraticForm, WingFunctionals, scaled_sum};
 use crate::Vec3;
 use crate::assembly::{Dof, LocalEnergy, LocalHessian};
+use crate::geometry::over_numbers::{angle_about, constant, cross, point, sub};
 use crate::geometry::{Real, Wing, hinge_angle};
 
 /// A clamped edge, seen from one of its faces.
@@ -119,26 +120,11 @@ impl DirectorClamp {
     /// E of one edge over any numbers: the oracle of the tests.
     pub fn formula<R: Real>(&self, stencil: usize, q: &[R; 7]) -> R {
         let edge = &self.edges[stencil];
-        let constant = |v: Vec3| [R::from(v.x), R::from(v.y), R::from(v.z)];
-        let (a, b, r) = (
-            constant(edge.ends[0]),
-            constant(edge.ends[1]),
-            constant(edge.director),
-        );
-        let (c, d) = ([q[0], q[1], q[2]], [q[3], q[4], q[5]]);
-        let sub = |p: [R; 3], q: [R; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-        let dot = |p: [R; 3], q: [R; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-        let cross = |p: [R; 3], q: [R; 3]| {
-            [
-                p[1] * q[2] - p[2] * q[1],
-                p[2] * q[0] - p[0] * q[2],
-                p[0] * q[1] - p[1] * q[0],
-            ]
-        };
-        let along = sub(b, a);
-        let normal = cross(along, sub(c, a));
-        let length = dot(along, along).sqrt();
-        let beta = (dot(cross(r, normal), along) / length).atan2(dot(r, normal));
+        let [a, b] = [0, 1].map(|end| constant(&edge.ends[end]));
+        let (c, d) = (point(q, 0), point(q, 1));
+        let along = sub(&b, &a);
+        let normal = cross(&along, &sub(&c, &a));
+        let beta = angle_about(&along, &constant(&edge.director), &normal);
         let theta = match edge.across {
             Some(_) => super::hinge::turning_angle(&[a, b, c, d]),
             None => R::from(0.0),

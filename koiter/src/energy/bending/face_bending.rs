@@ -10,8 +10,8 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
+use super::bending_stencil::BendingStencil;
 use super::hinge_function::{DeformedHinge, HingeFunction};
-use super::mid_edge::BendingStencil;
 use super::quadratic_form::QuadraticForm;
 use crate::Vec3;
 use crate::assembly::{Dof, LocalEnergy, LocalHessian};

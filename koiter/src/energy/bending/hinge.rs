@@ -2,6 +2,7 @@
 
 use crate::Vec3;
 use crate::assembly::Dof;
+use crate::geometry::over_numbers::{angle_about, cross, sub};
 use crate::geometry::{Real, Wing, hinge_angle};
 use crate::mesh::{EdgeId, Surface};
 use crate::rest::RestFrame;
@@ -97,26 +98,10 @@ pub(super) fn angle([wing, neighbor]: &[Wing; 2]) -> f64 {
     hinge_angle(wing, neighbor)
 }
 
-pub(super) fn sub<R: Real>(p: &[R; 3], q: &[R; 3]) -> [R; 3] {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
-}
-
-pub(super) fn inner<R: Real>(p: &[R; 3], q: &[R; 3]) -> R {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-}
-
-pub(super) fn cross<R: Real>(p: &[R; 3], q: &[R; 3]) -> [R; 3] {
-    [
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    ]
-}
-
 /// Hinge angle of edge `x₀ x₁` with apexes `x₂` (face traversing `0 → 1`) and `x₃`, over any numbers.
 pub(in crate::energy) fn turning_angle<R: Real>(x: &[[R; 3]; 4]) -> R {
     let edge = sub(&x[1], &x[0]);
     let n0 = cross(&edge, &sub(&x[2], &x[0]));
     let n1 = cross(&sub(&x[3], &x[0]), &edge);
-    (inner(&cross(&n0, &n1), &edge) / inner(&edge, &edge).sqrt()).atan2(inner(&n0, &n1))
+    angle_about(&edge, &n0, &n1)
 }

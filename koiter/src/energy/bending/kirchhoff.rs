@@ -26,6 +26,7 @@ use crate::assembly::{
     Assembled, Dof, DofLayout, Energy, LocalEnergy, LocalHessian, parallel_map, project_to_psd,
 };
 use crate::geometry::Real;
+use crate::geometry::over_numbers::{cross, dot, norm, point, sub};
 use crate::material::Section;
 use crate::mesh::{Surface, TriMesh};
 use crate::rest::RestFrame;
@@ -265,27 +266,17 @@ impl<S: Section> DiscreteKirchhoff<S> {
 
     /// E of one face over any numbers, whose section has the density `density(κ)` [J/m²]: the oracle of the tests.
     pub fn formula<R: Real>(&self, face: usize, q: &[R; 18], density: impl Fn([R; 3]) -> R) -> R {
-        let point = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
-        let dot = |u: [R; 3], v: [R; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
         let sum = |u: [R; 3], v: [R; 3]| [u[0] + v[0], u[1] + v[1], u[2] + v[2]];
         let times = |u: [R; 3], k: R| u.map(|x| x * k);
-        let cross = |u: [R; 3], v: [R; 3]| {
-            [
-                u[1] * v[2] - u[2] * v[1],
-                u[2] * v[0] - u[0] * v[2],
-                u[0] * v[1] - u[1] * v[0],
-            ]
-        };
         let one = R::from(1.0);
-        let x: [[R; 3]; 3] = std::array::from_fn(point);
-        let lengths: [R; 3] = std::array::from_fn(|c| dot(point(3 + c), point(3 + c)).sqrt());
-        let d: [[R; 3]; 3] = std::array::from_fn(|c| times(point(3 + c), one / lengths[c]));
-        let edge = |from: usize, to: usize| sum(x[to], times(x[from], R::from(-1.0)));
+        let lengths = [3, 4, 5].map(|i| norm(&point(q, i)));
+        let d: [[R; 3]; 3] = std::array::from_fn(|c| times(point(q, 3 + c), one / lengths[c]));
+        let edge = |from: usize, to: usize| sub(&point(q, to), &point(q, from));
         let middle = |u: usize, v: usize| {
             let along = edge(u, v);
-            let across = cross(along, cross(edge(0, 1), edge(0, 2)));
+            let across = cross(&along, &cross(&edge(0, 1), &edge(0, 2)));
             let ends = sum(d[u], d[v]);
-            let part = |w: [R; 3], factor: f64| times(w, dot(w, ends) / dot(w, w) * factor);
+            let part = |w: [R; 3], factor: f64| times(w, dot(&w, &ends) / dot(&w, &w) * factor);
             sum(part(across, 0.5), part(along, -0.25))
         };
         let p = [d[0], d[1], d[2], middle(1, 2), middle(2, 0), middle(0, 1)];
@@ -293,28 +284,13 @@ impl<S: Section> DiscreteKirchhoff<S> {
         let mut energy = R::from(0.0);
         for (n, [s, t]) in [[1.0, 1.0], [4.0, 1.0], [1.0, 4.0]].into_iter().enumerate() {
             let (s, t) = (s / 6.0, t / 6.0);
-            let by_s = [
-                4.0 * (s + t) - 3.0,
-                4.0 * s - 1.0,
-                0.0,
-                4.0 * t,
-                -4.0 * t,
-                4.0 - 8.0 * s - 4.0 * t,
-            ];
-            let by_t = [
-                4.0 * (s + t) - 3.0,
-                0.0,
-                4.0 * t - 1.0,
-                4.0 * s,
-                4.0 - 4.0 * s - 8.0 * t,
-                -4.0 * s,
-            ];
+            let [by_s, by_t] = shape_slopes(s, t);
             let zero = [R::from(0.0); 3];
             let along_s = (0..6).fold(zero, |v, n| sum(v, p[n].map(|x| x * by_s[n])));
             let along_t = (0..6).fold(zero, |v, n| sum(v, p[n].map(|x| x * by_t[n])));
-            let a = dot(along_s, edge(0, 1));
-            let b = (dot(along_t, edge(0, 1)) + dot(along_s, edge(0, 2))) * 0.5;
-            let c = dot(along_t, edge(0, 2));
+            let a = dot(&along_s, &edge(0, 1));
+            let b = (dot(&along_t, &edge(0, 1)) + dot(&along_s, &edge(0, 2))) * 0.5;
+            let c = dot(&along_t, &edge(0, 2));
             let rest = self.rest_forms[face][n];
             let change = [
                 a * (m11 * m11) - rest.x,
@@ -329,6 +305,29 @@ impl<S: Section> DiscreteKirchhoff<S> {
         }
         energy
     }
+}
+
+/// Derivatives by s and t of the quadratic shape functions of the corners and of the middles of edges `jk`, `ki`, `ij`.
+fn shape_slopes(s: f64, t: f64) -> [[f64; 6]; 2] {
+    let corner = 4.0 * (s + t) - 3.0;
+    [
+        [
+            corner,
+            4.0 * s - 1.0,
+            0.0,
+            4.0 * t,
+            -4.0 * t,
+            4.0 - 8.0 * s - 4.0 * t,
+        ],
+        [
+            corner,
+            0.0,
+            4.0 * t - 1.0,
+            4.0 * s,
+            4.0 - 4.0 * s - 8.0 * t,
+            -4.0 * s,
+        ],
+    ]
 }
 
 /// Area-weighted unit normals of the vertices: where the search for directors starts.

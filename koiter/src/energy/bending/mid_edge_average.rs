@@ -17,11 +17,11 @@
 
 use nalgebra::{Matrix3, SVector, Vector3};
 
+use super::bending_stencil::BendingStencil;
 use super::face_bending::{FaceBending, FaceLaw, FaceResponse, nodes};
-use super::hinge::{cross, inner, sub};
 use super::hinge_function::{DeformedHinge, HingeFunction};
-use super::mid_edge::BendingStencil;
 use crate::geometry::Real;
+use crate::geometry::over_numbers::{cross, dot, sub};
 use crate::material::Section;
 use crate::rest::RestFrame;
 
@@ -71,7 +71,7 @@ impl<S: Section> FaceBending<MidEdgeAverage<S>> {
             let other = cross(&sub(&across, &a), &edge);
             let sum: [R; 3] = std::array::from_fn(|axis| own[axis] + other[axis]);
             let arm: [R; 3] = std::array::from_fn(|i| a[i] + b[i] - apex[i] * 2.0);
-            inner(&arm, &sum) / inner(&sum, &sum).sqrt()
+            dot(&arm, &sum) / dot(&sum, &sum).sqrt()
         });
         let rows = self.law.frames[face].second_form_matrix();
         let change = std::array::from_fn(|s| {

@@ -1,5 +1,6 @@
 //! Bending models.
 
+mod bending_stencil;
 mod corotational_edge;
 mod corotational_face;
 mod director_clamp;
@@ -23,6 +24,7 @@ mod second_order_edges;
 mod second_order_faces;
 mod symmetry_edge;
 
+pub use bending_stencil::{BendingStencil, DirectorShape, bending_stencils, curvatures, directors};
 pub use corotational_edge::CorotationalEdge;
 pub use corotational_face::CorotationalFace;
 pub use director_clamp::{ClampedEdge, DirectorClamp};
@@ -32,9 +34,7 @@ pub use face_bending::{FaceBending, FaceLaw};
 pub(super) use hinge::turning_angle;
 pub use kirchhoff::{DiscreteKirchhoff, vertex_normals};
 pub use kirchhoff_form::kirchhoff_forms;
-pub use mid_edge::{
-    BendingStencil, DirectorShape, MidEdgeBending, bending_stencils, curvatures, directors,
-};
+pub use mid_edge::MidEdgeBending;
 pub use mid_edge_average::MidEdgeAverage;
 pub use profile::{AngleProfile, Identity, Sine, Tangent};
 pub use quadratic_hinge::QuadraticHinge;

@@ -24,6 +24,7 @@ use super::hinge::turning_angle;
 use super::quadratic_form::{Functional, QuadraticForm, WingFunctionals, scaled_sum};
 use crate::Vec3;
 use crate::assembly::{Dof, LocalEnergy, LocalHessian};
+use crate::geometry::over_numbers::{cross, norm};
 use crate::geometry::{Real, Wing, hinge_angle};
 use crate::mesh::{EdgeId, FaceId, Surface};
 use crate::rest::RestFrame;
@@ -270,10 +271,8 @@ impl SecondOrderEdges {
                 if edge.nodes[3 + 3 * side].is_none() {
                     continue;
                 }
-                let cross = |i: usize, j: usize| tangent[i] * into[j] - tangent[j] * into[i];
-                let normal = [cross(1, 2), cross(2, 0), cross(0, 1)];
-                let squared = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
-                let stretch = (squared.sqrt() * (1.0 / edge.twice_areas[side])).ln();
+                let twice_area = norm(&cross(&tangent, &into));
+                let stretch = (twice_area * (1.0 / edge.twice_areas[side])).ln();
                 energy = energy + stretch * stretch * (0.25 * self.area_stiffness * edge.rigidity);
             }
         }

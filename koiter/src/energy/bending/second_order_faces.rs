@@ -26,6 +26,7 @@ use super::quadratic_form::{Functional, QuadraticForm};
 use crate::Vec3;
 use crate::assembly::{Dof, LocalEnergy, LocalHessian};
 use crate::geometry::Real;
+use crate::geometry::over_numbers::{cross, dot, norm};
 use crate::mesh::TriMesh;
 use crate::rest::RestFrame;
 
@@ -146,7 +147,6 @@ impl SecondOrderFaces {
 
     /// E of one face over any numbers: the oracle of the tests.
     pub fn formula<R: Real>(&self, face: usize, q: &[R; 18]) -> R {
-        let dot = |u: [R; 3], v: [R; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
         let sum = |weight: &dyn Fn(usize) -> f64| -> [R; 3] {
             std::array::from_fn(|axis| {
                 (0..6).fold(R::from(0.0), |total, n| total + q[3 * n + axis] * weight(n))
@@ -157,13 +157,9 @@ impl SecondOrderFaces {
         for point in SAMPLES {
             let a = sum(&|n| slopes(point)[n][0]);
             let b = sum(&|n| slopes(point)[n][1]);
-            let normal = [
-                a[1] * b[2] - a[2] * b[1],
-                a[2] * b[0] - a[0] * b[2],
-                a[0] * b[1] - a[1] * b[0],
-            ];
-            let length = dot(normal, normal).sqrt();
-            let form = |k: usize| dot(sum(&|n| CURVATURES[n][k]), normal) / length;
+            let normal = cross(&a, &b);
+            let length = norm(&normal);
+            let form = |k: usize| dot(&sum(&|n| CURVATURES[n][k]), &normal) / length;
             let trace = form(0) * (m11 * m11 + m12 * m12)
                 + form(1) * (2.0 * m12 * m22)
                 + form(2) * (m22 * m22);

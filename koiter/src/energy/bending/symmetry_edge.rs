@@ -12,11 +12,12 @@
 //!
 //! K [J/rad²] is a penalty; ψ is wrong by the bending moment over K.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use crate::Vec3;
-use crate::assembly::{Dof, LocalEnergy, LocalHessian};
-use crate::geometry::{Jet, Real};
+use crate::assembly::{Dof, LocalEnergy, LocalHessian, variables};
+use crate::geometry::Real;
+use crate::geometry::over_numbers::{angle_about, constant, cross, point, sub};
 
 /// A boundary edge on a plane of symmetry.
 #[derive(Clone, Copy, Debug)]
@@ -60,22 +61,10 @@ impl SymmetryEdge {
 
     /// β.
     fn turn_from_plane<R: Real>(&self, q: &[R; 9]) -> R {
-        let point = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
-        let m: [R; 3] = std::array::from_fn(|d| R::from(self.normal[d]));
-        let sub = |p: [R; 3], q: [R; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-        let dot = |p: [R; 3], q: [R; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-        let cross = |p: [R; 3], q: [R; 3]| {
-            [
-                p[1] * q[2] - p[2] * q[1],
-                p[2] * q[0] - p[0] * q[2],
-                p[0] * q[1] - p[1] * q[0],
-            ]
-        };
-        let along = sub(point(1), point(0));
-        let normal = cross(along, sub(point(2), point(0)));
-        let r = cross(m, along);
-        let length = dot(along, along).sqrt();
-        (dot(cross(r, normal), along) / length).atan2(dot(r, normal))
+        let [a, b, c] = [0, 1, 2].map(|i| point(q, i));
+        let along = sub(&b, &a);
+        let normal = cross(&along, &sub(&c, &a));
+        angle_about(&along, &cross(&constant(&self.normal), &along), &normal)
     }
 }
 
@@ -106,13 +95,7 @@ impl LocalEnergy<10, 4> for SymmetryEdges {
     }
 
     fn hessian(&self, stencil: usize, q: &SVector<f64, 10>) -> LocalHessian<10> {
-        let variables = std::array::from_fn(|i| Jet::<10>::variable(q[i], i));
-        let jet = self.formula(stencil, &variables);
-        LocalHessian {
-            value: jet.value(),
-            gradient: SVector::from_fn(|i, _| jet.gradient()[i]),
-            hessian: SMatrix::from_fn(|i, j| jet.hessian(i, j)),
-        }
+        self.formula(stencil, &variables(q)).into()
     }
 
     fn describe(&self, stencil: usize) -> String {

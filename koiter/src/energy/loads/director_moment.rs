@@ -8,11 +8,12 @@
 //! the moment m ℓ [N·m]. ψ_v [rad] is the angle about the edge, of unit direction e, from the reference r to d, whatever the
 //! length of d.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use crate::Vec3;
-use crate::assembly::{Dof, LocalEnergy, LocalHessian};
-use crate::geometry::{Jet, Real};
+use crate::assembly::{Dof, LocalEnergy, LocalHessian, variables};
+use crate::geometry::Real;
+use crate::geometry::over_numbers::{constant, cross, dot, point, sub};
 
 /// An edge under a moment, with the directors of its ends.
 #[derive(Clone, Copy, Debug)]
@@ -58,23 +59,15 @@ impl DirectorMoment {
 
     /// The mean of ψ over both ends.
     fn angle<R: Real>(&self, stencil: usize, q: &[R; 12]) -> R {
-        let point = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
-        let sub = |p: [R; 3], q: [R; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-        let dot = |p: [R; 3], q: [R; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-        let along = sub(point(1), point(0));
-        let length_squared = dot(along, along);
+        let along = sub(&point(q, 1), &point(q, 0));
+        let length_squared = dot(&along, &along);
         let length = length_squared.sqrt();
         let turning = |end: usize| {
             let reference = self.edges[stencil].references[end];
-            let r: [R; 3] = std::array::from_fn(|k| R::from(reference[k]));
-            let d = point(2 + end);
-            let cross = [
-                r[1] * d[2] - r[2] * d[1],
-                r[2] * d[0] - r[0] * d[2],
-                r[0] * d[1] - r[1] * d[0],
-            ];
-            let across = dot(r, d) - dot(r, along) * dot(d, along) / length_squared;
-            (dot(cross, along) / length).atan2(across)
+            let r: [R; 3] = constant(&reference);
+            let d = point(q, 2 + end);
+            let across = dot(&r, &d) - dot(&r, &along) * dot(&d, &along) / length_squared;
+            (dot(&cross(&r, &d), &along) / length).atan2(across)
         };
         (turning(0) + turning(1)) * 0.5
     }
@@ -86,13 +79,9 @@ impl DirectorMoment {
     }
 
     fn derivatives(&self, stencil: usize, q: &SVector<f64, 12>, kept: f64) -> LocalHessian<12> {
-        let variables = std::array::from_fn(|i| Jet::<12>::variable(q[i], i));
-        let jet = self.formula(stencil, &variables);
-        LocalHessian {
-            value: jet.value(),
-            gradient: SVector::from_fn(|i, _| jet.gradient()[i]),
-            hessian: SMatrix::from_fn(|i, j| kept * jet.hessian(i, j)),
-        }
+        let mut local = LocalHessian::from(self.formula(stencil, &variables(q)));
+        local.hessian *= kept;
+        local
     }
 }
 

@@ -18,12 +18,13 @@
 //! The second derivatives are as often negative as positive; like those of [`super::Pressure`] they are left out where
 //! curvature is clamped.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use crate::Vec3;
-use crate::assembly::{Dof, LocalEnergy, LocalHessian};
+use crate::assembly::{Dof, LocalEnergy, LocalHessian, variables};
 use crate::energy::bending::turning_angle;
-use crate::geometry::{Jet, Real, Wing, hinge_angle};
+use crate::geometry::over_numbers::{angle_about, constant, cross, point, sub};
+use crate::geometry::{Real, Wing, hinge_angle};
 
 /// An edge under a moment, seen from one of its faces.
 #[derive(Clone, Copy, Debug)]
@@ -99,22 +100,10 @@ impl EdgeMoment {
     /// ψ.
     fn angle_formula<R: Real>(&self, stencil: usize, q: &[R; 13]) -> R {
         let edge = &self.edges[stencil];
-        let point = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];
-        let r: [R; 3] = std::array::from_fn(|d| R::from(edge.reference[d]));
-        let sub = |p: [R; 3], q: [R; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-        let dot = |p: [R; 3], q: [R; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-        let cross = |p: [R; 3], q: [R; 3]| {
-            [
-                p[1] * q[2] - p[2] * q[1],
-                p[2] * q[0] - p[0] * q[2],
-                p[0] * q[1] - p[1] * q[0],
-            ]
-        };
-        let (a, b, c, d) = (point(0), point(1), point(2), point(3));
-        let along = sub(b, a);
-        let normal = cross(along, sub(c, a));
-        let length = dot(along, along).sqrt();
-        let beta = (dot(cross(r, normal), along) / length).atan2(dot(r, normal));
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| point(q, i));
+        let along = sub(&b, &a);
+        let normal = cross(&along, &sub(&c, &a));
+        let beta = angle_about(&along, &constant(&edge.reference), &normal);
         let tilt = q[12] * edge.sign;
         match edge.across {
             Some(_) => beta + tilt + turning_angle(&[a, b, c, d]) * 0.5,
@@ -129,13 +118,9 @@ impl EdgeMoment {
     }
 
     fn derivatives(&self, stencil: usize, q: &SVector<f64, 13>, kept: f64) -> LocalHessian<13> {
-        let variables = std::array::from_fn(|i| Jet::<13>::variable(q[i], i));
-        let jet = self.formula(stencil, &variables);
-        LocalHessian {
-            value: jet.value(),
-            gradient: SVector::from_fn(|i, _| jet.gradient()[i]),
-            hessian: SMatrix::from_fn(|i, j| kept * jet.hessian(i, j)),
-        }
+        let mut local = LocalHessian::from(self.formula(stencil, &variables(q)));
+        local.hessian *= kept;
+        local
     }
 }
 
