@@ -2,6 +2,7 @@
 
 mod aids;
 mod modes;
+mod scenes;
 mod studies;
 mod validation;
 
@@ -11,6 +12,7 @@ pub(crate) use aids::{
 };
 
 pub(crate) use modes::ModesArguments;
+pub(crate) use scenes::{ScenesArguments, Variation};
 pub(crate) use studies::{
     ConvergenceArguments, CreasedVeeArguments, DirectorSource, EnergyArguments, RestCurvature,
     bending_models,
@@ -299,6 +301,8 @@ pub(crate) enum BenchSubject {
     Contact(SizeArguments),
     /// Whole steps of the scene drape-n
     Drape(DrapeArguments),
+    /// Whole runs of the contact-rich scenes, audited: "Better Bending", Table 7; and with other steps, gaps and axes
+    Scenes(ScenesArguments),
     /// What each bending model costs: evaluations, and nonzeros of its Hessian
     Models(ModelsArguments),
     /// Bending energies of known shapes under refinement: "Better Bending", Table 4 and Figures 3 to 12

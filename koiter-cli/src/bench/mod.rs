@@ -10,6 +10,7 @@ mod drape;
 mod lateral_buckling;
 mod models;
 mod published;
+mod scenes;
 mod sheet;
 mod solve;
 mod table;
@@ -32,6 +33,9 @@ pub(crate) fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         }
         BenchSubject::CreasedVee(options) => {
             return creased_vee::bench(options, arguments.json);
+        }
+        BenchSubject::Scenes(options) => {
+            return scenes::bench(options, arguments.json);
         }
         BenchSubject::Models(options) => models::bench(options),
         BenchSubject::LateralBuckling(options) => lateral_buckling::bench(options),

@@ -76,15 +76,7 @@ impl Costs {
     }
 
     fn measure(bending: &mut FreeBending, repeats: usize) -> Self {
-        let mut builder = PatternBuilder::default();
-        for energy in &bending.energies {
-            energy.add_to_pattern(&bending.q, &mut builder);
-        }
-        let pattern = Arc::new(Pattern::new(&bending.layout, &builder.finish()));
-        for energy in &mut bending.energies {
-            energy.bind(&pattern);
-        }
-        let mut matrix = SymmetricMatrix::zeros(pattern);
+        let mut matrix = bound_matrix(bending);
         let value = fastest(repeats, || {
             let energies = bending.energies.iter();
             std::hint::black_box(energies.map(|e| e.value(&bending.q)).sum::<f64>());
@@ -121,6 +113,26 @@ impl Costs {
         ]);
         row
     }
+}
+
+/// Nonzeros of the Hessian of bending, of both triangles, at the positions and directors of a measurement.
+pub(super) fn hessian_nonzeros(measurement: &Measurement<'_>) -> Result<usize, Failure> {
+    let mut bending = measurement.free_bending().map_err(Failure::run)?;
+    let mut matrix = bound_matrix(&mut bending);
+    assemble(&bending, &mut matrix, PsdProjection::Exact);
+    Ok(nonzeros(&matrix))
+}
+
+fn bound_matrix(bending: &mut FreeBending) -> SymmetricMatrix {
+    let mut builder = PatternBuilder::default();
+    for energy in &bending.energies {
+        energy.add_to_pattern(&bending.q, &mut builder);
+    }
+    let pattern = Arc::new(Pattern::new(&bending.layout, &builder.finish()));
+    for energy in &mut bending.energies {
+        energy.bind(&pattern);
+    }
+    SymmetricMatrix::zeros(pattern)
 }
 
 fn assemble(bending: &FreeBending, matrix: &mut SymmetricMatrix, projection: PsdProjection) {

@@ -27,6 +27,7 @@ mod simulation;
 mod snapshot;
 mod step_control;
 mod symmetry;
+mod turned;
 mod vertex_directors;
 
 #[cfg(feature = "serde")]
