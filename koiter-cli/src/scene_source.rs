@@ -318,20 +318,15 @@ fn unreadable(error: ReadError) -> UnreadableMesh {
 
 #[cfg(test)]
 mod tests {
+    use koiter::scene::Simulation;
+
     use super::*;
 
     #[test]
     fn every_shipped_scene_and_variant_is_sound() {
         for shipped in SHIPPED {
             let found = find(shipped.name).unwrap();
-            for variant in ["default", "tiny"] {
-                let overrides: Vec<String> = match (variant, shipped.name) {
-                    ("tiny", "drape-n") => vec!["n=35".into()],
-                    ("tiny", _) if found.text.contains("[variants.resolution.tiny]") => {
-                        vec!["resolution=tiny".into()]
-                    }
-                    _ => vec![],
-                };
+            for overrides in [vec![], coarsest(shipped)] {
                 let file = SceneFile::parse(shipped.name, &found.text, &overrides).unwrap();
                 let scene = Scene::build(&file, &found.meshes).unwrap();
                 // Published problems are as thick as they are, on meshes as fine as they need.
@@ -343,6 +338,31 @@ mod tests {
                     shipped.name,
                     scene.warnings
                 );
+            }
+        }
+    }
+
+    /// The overrides that make a shipped scene as coarse as it comes.
+    fn coarsest(shipped: &Shipped) -> Vec<String> {
+        match shipped.name {
+            "drape-n" => vec!["n=35".into()],
+            _ if shipped.text.contains("[variants.resolution.tiny]") => {
+                vec!["resolution=tiny".into()]
+            }
+            _ => vec![],
+        }
+    }
+
+    #[test]
+    fn every_shipped_scene_takes_its_first_steps() {
+        for shipped in SHIPPED {
+            let found = find(shipped.name).unwrap();
+            let file = SceneFile::parse(shipped.name, &found.text, &coarsest(shipped)).unwrap();
+            let scene = Scene::build(&file, &found.meshes).unwrap();
+            let mut simulation = Simulation::new(scene.model).unwrap();
+            for step in 1..=3 {
+                let report = simulation.step(scene.timeline.dt(step)).unwrap();
+                assert!(report.converged, "{}: {:?}", shipped.name, report.diagnosis);
             }
         }
     }
