@@ -246,6 +246,25 @@ fn the_failing_unknown_is_exact_and_the_same_for_any_number_of_threads() {
     }
 }
 
+#[test]
+fn roots_hold_no_buffers() {
+    let mut layout = DofLayout::new();
+    layout.push_nodes(1000, 1, true);
+    let pattern = Arc::new(Pattern::new(&layout, &PatternBuilder::default().finish()));
+    let ordering = NodeOrdering::of((0..1000).collect());
+    let mut matrix = SymmetricMatrix::zeros(Arc::clone(&pattern));
+    matrix.values.fill(2.0);
+    pool(2).install(|| {
+        let mut solver = Multifrontal::default();
+        solver.analyze(&pattern, &ordering);
+        for _ in 0..3 {
+            solver.factorize(&matrix).unwrap();
+            solver.solve(&mut [1.0; 1000]);
+        }
+        assert!(solver.buffers.0.lock().unwrap().len() <= 2, "one a thread");
+    });
+}
+
 /// Kernels must not look at the alignment of their memory: buffers are handed out by chance.
 #[test]
 fn alignment_does_not_change_bits() {

@@ -38,7 +38,7 @@ pub(super) trait UpwardPass: Sync {
 
 /// Memory of updates, kept from pass to pass: asking the system for it anew costs more than filling it.
 #[derive(Debug, Default)]
-pub(super) struct Buffers(Mutex<Vec<Vec<f64>>>);
+pub(super) struct Buffers(pub(super) Mutex<Vec<Vec<f64>>>);
 
 impl Buffers {
     /// An empty buffer: the smallest that holds `size` entries, or else the largest, which then grows. So there are never
@@ -76,10 +76,7 @@ pub(super) fn upward(
         pass,
         buffers,
     };
-    for update in walk.subtrees(&tree.roots, data, 0)? {
-        buffers.give_back(update);
-    }
-    Ok(())
+    walk.subtrees(&tree.roots, data, 0).map(|_| ())
 }
 
 struct Walk<'a, P> {
@@ -132,7 +129,7 @@ impl<P: UpwardPass> Walk<'_, P> {
         update.resize(self.pass.update_size(front), 0.0);
         (self.pass).visit(front, own, children, &mut update, &mut Scratch::new())?;
         updates.into_iter().for_each(|u| self.buffers.give_back(u));
-        Ok(update)
+        Ok(self.passed_on(update))
     }
 
     /// A small subtree. A front's update is made above those of its children and then moved down over them.
@@ -158,6 +155,16 @@ impl<P: UpwardPass> Walk<'_, P> {
             stack.copy_within(top.., base);
             stack.truncate(base + pass.update_size(front));
         }
-        Ok(stack)
+        Ok(self.passed_on(stack))
+    }
+
+    /// Roots pass on nothing, and their buffers serve the next: unknowns that are coupled to nothing are as many roots, and
+    /// a search among as many buffers at each would take the square of the time.
+    fn passed_on(&self, update: Vec<f64>) -> Vec<f64> {
+        if !update.is_empty() {
+            return update;
+        }
+        self.buffers.give_back(update);
+        Vec::new()
     }
 }
