@@ -197,3 +197,26 @@ fn the_barrier_is_stiffened_by_a_small_gap_that_shrinks_and_not_by_one_that_open
     contact.begin_iteration(&raised(1e-3));
     assert_eq!(contact.kappa(), 2.0 * start);
 }
+
+#[test]
+fn the_barrier_is_stiffened_by_a_small_gap_that_keeps_steps_short() {
+    let (mut contact, _, q) = scene(0.0);
+    contact.prepare(&q);
+    let gap = contact.statistics().min_gap;
+    let start = contact.kappa();
+    // The floor of the test above, 1 mm below the sheet: every step would raise it by ten times that.
+    let mut near = q;
+    near[29] += gap - 1e-3;
+    contact.prepare(&near);
+    contact.begin_iteration(&near);
+    let mut direction = vec![0.0; near.len()];
+    direction[29] = 1e-2;
+    assert!(contact.max_step(&near, &direction) < 0.1);
+    contact.begin_iteration(&near);
+    assert_eq!(contact.kappa(), 2.0 * start);
+    // A step that may be taken whole says nothing.
+    direction[29] = 1e-4;
+    assert_eq!(contact.max_step(&near, &direction), 1.0);
+    contact.begin_iteration(&near);
+    assert_eq!(contact.kappa(), 2.0 * start);
+}

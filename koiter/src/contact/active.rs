@@ -34,6 +34,8 @@ pub struct Contact {
     /// Where that is.
     pub(super) closest: Option<Limiter>,
     pub(super) limiter: Option<Limiter>,
+    /// The fraction of the last motion that was allowed.
+    pub(super) last_bound: f64,
 }
 
 /// What the barrier of a pair needs.
@@ -75,6 +77,7 @@ impl Contact {
             smallest_gap: f64::INFINITY,
             closest: None,
             limiter: None,
+            last_bound: 1.0,
         }
     }
 

@@ -10,8 +10,12 @@ use crate::assembly::{
     parallel_map,
 };
 
-/// When the smallest gap falls below this fraction of d̂ and keeps shrinking, the barrier is stiffened.
+/// When the smallest gap falls below this fraction of d̂ and keeps shrinking, or keeps steps short, the barrier is stiffened.
 const STIFFEN_BELOW: f64 = 0.02;
+
+/// Contact that lets less than this of a Newton step be taken keeps it short: forces far beyond the barrier's, as those of
+/// metal, press a pair to a gap that no longer shrinks, and hundreds of steps get on by a hundredth each.
+const KEPT_SHORT: f64 = 0.1;
 
 impl Energy for Contact {
     fn name(&self) -> &'static str {
@@ -29,13 +33,14 @@ impl Energy for Contact {
         }
         // The gap of the start, so that only what shrinks from here on stiffens the barrier.
         self.refresh(q);
+        self.last_bound = 1.0;
     }
 
     fn begin_iteration(&mut self, q: &[f64]) {
         let before = self.smallest_gap;
         self.refresh(q);
-        let shrinking = self.smallest_gap < before;
-        if shrinking
+        let pressed = self.smallest_gap < before || self.last_bound < KEPT_SHORT;
+        if pressed
             && self.smallest_gap < STIFFEN_BELOW * self.d_hat
             && self.kappa < self.largest_kappa
         {
@@ -117,7 +122,8 @@ impl Energy for Contact {
     }
 
     fn max_step(&mut self, q: &[f64], direction: &[f64]) -> f64 {
-        self.bound_step(q, direction)
+        self.last_bound = self.bound_step(q, direction);
+        self.last_bound
     }
 
     fn worst_element(&self, q: &[f64]) -> Option<WorstElement> {
