@@ -200,6 +200,7 @@ mod tests {
             "irregular = { size = [1.0, 1.0], max_area = 1e-3, seed = 1 }",
             "disc = { radius = 1.0, rings = 12 }",
             "cylinder = { radius = 1.0, height = 2.0, around = 40, along = 20 }",
+            "cylinder = { radius = 1.0, height = 2.0, around = 40, along = 20, corrugation = { waves = 5, depth = 0.2 } }",
             "cone = { base_radius = 1.0, height = 2.0, around = 40, along = 20 }",
             "icosphere = { radius = 1.0, subdivisions = 3 }",
             "torus = { major_radius = 1.0, minor_radius = 0.3, around = 40, tube = 20 }",

@@ -2,9 +2,9 @@
 
 use nalgebra::{Rotation3, Unit};
 
-use super::spec::{Diagonals, MeshSpec, RotationSpec, UpAxis};
+use super::spec::{CylinderSpec, Diagonals, MeshSpec, RotationSpec, UpAxis};
 use crate::Vec3;
-use crate::mesh::generate::{self, GeneratorError, GridDiagonals};
+use crate::mesh::generate::{self, Corrugation, GeneratorError, GridDiagonals};
 use crate::mesh::{MeshError, OrientationPolicy, Surface, SurfaceOptions, UnreferencedPolicy};
 
 /// Where mesh files and files of values by face come from; the library's scenes read no files themselves.
@@ -124,6 +124,20 @@ fn make(spec: &MeshSpec, source: &dyn MeshSource) -> Result<Surface, ShapeError>
     Ok(generate(spec)?)
 }
 
+fn cylinder(spec: &CylinderSpec) -> Result<Surface, GeneratorError> {
+    let (radius, height) = (spec.radius, spec.height);
+    match &spec.corrugation {
+        None => generate::cylinder(radius, height, spec.around, spec.along),
+        Some(waves) => {
+            let corrugation = Corrugation {
+                waves: waves.waves,
+                depth: waves.depth,
+            };
+            generate::corrugated_tube(radius, height, corrugation, spec.around, spec.along)
+        }
+    }
+}
+
 fn generate(spec: &MeshSpec) -> Result<Surface, GeneratorError> {
     if let Some(g) = &spec.grid {
         let [nx, ny] = g.cells;
@@ -136,7 +150,7 @@ fn generate(spec: &MeshSpec) -> Result<Surface, GeneratorError> {
         return generate::disc(g.radius, g.rings);
     }
     if let Some(g) = &spec.cylinder {
-        return generate::cylinder(g.radius, g.height, g.around, g.along);
+        return cylinder(g);
     }
     if let Some(g) = &spec.cone {
         return generate::cone(g.base_radius, g.height, g.top_radius, g.around, g.along);

@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-/// Of [`grid`](super::grid()), [`cylinder`](super::cylinder), [`cone`](super::cone) (at most),
+/// Of [`grid`](super::grid()), [`cylinder`](super::cylinder),
+/// [`corrugated_tube`](super::corrugated_tube), [`cone`](super::cone) (at most),
 /// [`torus`](super::torus), [`cylinder_panel`](super::cylinder_panel) and [`sphere_zone`](super::sphere_zone): two a cell.
 pub fn cells(nx: usize, ny: usize) -> f64 {
     2.0 * nx as f64 * ny as f64

@@ -3,6 +3,7 @@
 //! Everything is centred at the origin with z as its axis; exceptions are the cone, whose base lies at
 //! z = 0, and patches of cylinders and spheres.
 
+mod corrugated;
 mod delaunay;
 pub mod face_count;
 mod inset_cap;
@@ -17,6 +18,7 @@ mod solids;
 mod split_mix;
 mod vee;
 
+pub use corrugated::{Corrugation, corrugated_tube};
 pub use delaunay::delaunay;
 pub use inset_cap::inset_cap;
 pub use irregular::{IRREGULAR_MIN_ANGLE_DEGREES, irregular};

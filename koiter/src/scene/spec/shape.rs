@@ -216,6 +216,19 @@ pub struct CylinderSpec {
     pub around: usize,
     /// Cells along the axis.
     pub along: usize,
+    /// Waves of the radius along the axis; default: none.
+    #[serde(default)]
+    pub corrugation: Option<CorrugationSpec>,
+}
+
+/// Waves of the radius of a tube, from trough to trough; the tube's radius is the mean.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CorrugationSpec {
+    /// Whole waves on the height; each takes at least four cells.
+    pub waves: usize,
+    /// From trough to crest [m].
+    pub depth: f64,
 }
 
 /// Cone or frustum along z, its base at z = 0.
