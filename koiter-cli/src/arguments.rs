@@ -89,7 +89,8 @@ and others) complete its keys and mark mistakes.")]
 #[command(after_help = "\
 SCENE is a scene.toml, a folder that holds one, or a scene that ships with Koiter:
   sphere-drape, drape-n, cantilever, hanging-sheet, v-beam, rolled-strip, hinged-roof, lateral-buckling,
-  popper, pinned-drop, ball-crash, twisted-cylinder, your-own-mesh
+  popper, pinned-drop, ball-crash, can-crush, cone-crush, twisted-cylinder, twisted-sheet,
+  your-own-mesh
 
 Examples:
   koiter run sphere-drape

@@ -86,6 +86,21 @@ const SHIPPED: &[Shipped] = &[
         meshes: &[],
     },
     Shipped {
+        name: "can-crush",
+        text: include_str!("../../scenes/can-crush/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "cone-crush",
+        text: include_str!("../../scenes/cone-crush/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "twisted-sheet",
+        text: include_str!("../../scenes/twisted-sheet/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
         name: "your-own-mesh",
         text: include_str!("../../scenes/your-own-mesh/scene.toml"),
         meshes: &[(
