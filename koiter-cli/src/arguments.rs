@@ -89,7 +89,7 @@ and others) complete its keys and mark mistakes.")]
 #[command(after_help = "\
 SCENE is a scene.toml, a folder that holds one, or a scene that ships with Koiter:
   sphere-drape, drape-n, cantilever, hanging-sheet, v-beam, rolled-strip, hinged-roof, lateral-buckling,
-  popper, pinned-drop, ball-crash, can-crush, cone-crush, twisted-cylinder, twisted-sheet,
+  popper, pinned-drop, ball-crash, can-crush, cone-crush, twisted-cylinder, twisted-sheet, corrugated-collision,
   your-own-mesh
 
 Examples:

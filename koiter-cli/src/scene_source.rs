@@ -101,6 +101,11 @@ const SHIPPED: &[Shipped] = &[
         meshes: &[],
     },
     Shipped {
+        name: "corrugated-collision",
+        text: include_str!("../../scenes/corrugated-collision/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
         name: "your-own-mesh",
         text: include_str!("../../scenes/your-own-mesh/scene.toml"),
         meshes: &[(
