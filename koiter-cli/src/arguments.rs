@@ -60,7 +60,7 @@ pub(crate) enum Verb {
     /// Lists the materials that scenes can name.
     #[command(after_help = "Examples:\n  koiter materials\n  koiter materials --json")]
     Materials(CatalogueArguments),
-    /// Lists the bending models that scenes can name.
+    /// Lists the bending models and membranes that scenes can name.
     #[command(after_help = "Examples:\n  koiter models\n  koiter models --json")]
     Models(CatalogueArguments),
     /// Prints the JSON Schema of scene files, by which editors complete and check them.

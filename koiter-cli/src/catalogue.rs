@@ -2,7 +2,7 @@
 
 use koiter::material::presets;
 use koiter::scene::json_schema;
-use koiter::scene::model::{BendingModel, MaterialModel};
+use koiter::scene::model::{BendingModel, MaterialModel, MembraneModel};
 use serde_json::{Value, json};
 
 use crate::arguments::CatalogueArguments;
@@ -80,7 +80,7 @@ fn materials_json() -> Value {
     })
 }
 
-/// Lists the bending models.
+/// Lists the bending models and the membranes.
 pub(crate) fn models(arguments: &CatalogueArguments) -> Result<(), Failure> {
     let default = BendingModel::default();
     if arguments.json {
@@ -93,9 +93,23 @@ pub(crate) fn models(arguments: &CatalogueArguments) -> Result<(), Failure> {
                 "source": (!info.source.is_empty()).then_some(info.source),
             })
         });
+        let membranes = MembraneModel::ALL.map(|model| {
+            let info = model.info();
+            json!({
+                "name": info.name,
+                "what": info.what,
+                "keys": info.keys,
+                "source": info.source,
+            })
+        });
         say!(
             "{}",
-            json!({ "models": all, "default": default.info().name })
+            json!({
+                "models": all,
+                "default": default.info().name,
+                "membranes": membranes,
+                "default_membrane": MembraneModel::default().info().name,
+            })
         );
         return Ok(());
     }
@@ -114,7 +128,22 @@ pub(crate) fn models(arguments: &CatalogueArguments) -> Result<(), Failure> {
         }
     }
     say!(
-        "a shell names its model, as bending = \"dcs\". Unknowns are those beside the positions of the vertices. Sources: docs/references.bib"
+        "a shell names its model, as bending = \"dcs\". Unknowns are those beside the positions of the vertices."
+    );
+    say!("");
+    say!("membrane         what it is; source");
+    for model in MembraneModel::ALL {
+        let info = model.info();
+        let remark = match model == MembraneModel::default() {
+            true => " (the default)",
+            false => "",
+        };
+        say!("{:16} {}{remark}", info.name, info.what);
+        say!("{:16} {}", "", info.source);
+    }
+    say!(
+        "a shell names its membrane, as membrane = \"discrete-shells\"; stiffnesses other than the material's, and weights of \
+         hinges, stand in its table discrete_shells. Sources: docs/references.bib"
     );
     Ok(())
 }

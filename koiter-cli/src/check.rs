@@ -31,6 +31,7 @@ struct Report {
     obstacles: Vec<String>,
     constraints: usize,
     loads: Vec<LoadReport>,
+    processes: Vec<ProcessReport>,
     probes: Vec<String>,
     warnings: Vec<String>,
 }
@@ -56,6 +57,14 @@ struct ShellReport {
     shortest_edge: f64,
     min_angle_degrees: f64,
     boundary_loops: Vec<usize>,
+}
+
+/// What changes a rest shape.
+#[derive(Serialize)]
+struct ProcessReport {
+    name: String,
+    shell: String,
+    what: String,
 }
 
 /// A load at a factor of 1; of its totals the one that it has.
@@ -132,6 +141,13 @@ fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(),
     let loads = scene.model.loads.iter();
     let loads = loads.map(|load| LoadReport::new(&scene.model, load));
     let loads = loads.collect();
+    let processes = scene.model.processes.iter();
+    let processes = processes.map(|process| ProcessReport {
+        name: process.name.clone(),
+        shell: scene.model.shells[process.shell].name.clone(),
+        what: process.kind.to_string(),
+    });
+    let processes = processes.collect();
     let stats = start(&scene.model, arguments.debug_mesh.as_deref())?.stats();
     let phases = phases(&scene);
     let report = Report {
@@ -149,6 +165,7 @@ fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(),
         obstacles,
         constraints,
         loads,
+        processes,
         probes: scene.probes.into_iter().map(|probe| probe.name).collect(),
         warnings: scene
             .warnings
@@ -219,6 +236,14 @@ impl Report {
                 load.name,
                 load.shell,
                 load.words
+            );
+        }
+        for process in &self.processes {
+            say!(
+                "process {}: shell {} {}",
+                process.name,
+                process.shell,
+                process.what
             );
         }
         say!("energies: {}", self.energies.join(", "));

@@ -11,6 +11,7 @@ pub mod integrate;
 pub mod io;
 pub mod material;
 pub mod mesh;
+pub mod process;
 pub mod rest;
 pub mod scene;
 pub mod solve;

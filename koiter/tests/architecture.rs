@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-const ORDER: [&str; 13] = [
+const ORDER: [&str; 14] = [
     "mesh",
     "geometry",
     "material",
@@ -13,6 +13,7 @@ const ORDER: [&str; 13] = [
     "contact",
     "solve",
     "integrate",
+    "process",
     "scene",
     "io",
     "testing",

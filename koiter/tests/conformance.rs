@@ -4,12 +4,15 @@ use koiter::Vec3;
 use koiter::assembly::{Assembled, Dof, DofLayout, Energy, LocalEnergy, LocalHessian};
 use koiter::energy::bending::{
     AngleProfile, ClampedEdge, CorotationalEdge, CorotationalFace, DirectorClamp,
-    DiscreteKirchhoff, DiscreteShells, FaceBending, Identity, LaplacianMesh, MidEdgeAverage,
-    MidEdgeBending, QuadraticHinge, QuadraticVertex, SecondOrderEdges, SecondOrderFaces, Sine,
-    SymmetryEdge, SymmetryEdges, Tangent, bending_stencils, vertex_normals,
+    DiscreteKirchhoff, DiscreteShells, FaceBending, HingeSprings, HingeWeight, Identity,
+    LaplacianMesh, MidEdgeAverage, MidEdgeBending, QuadraticHinge, QuadraticVertex,
+    SecondOrderEdges, SecondOrderFaces, Sine, SymmetryEdge, SymmetryEdges, Tangent,
+    bending_stencils, vertex_normals,
 };
 use koiter::energy::loads::{DirectorMoment, EdgeMoment, Pressure, TurnedDirectors, TurnedEdge};
-use koiter::energy::{Membrane, StrainLimit, StretchLimit};
+use koiter::energy::{
+    DiscreteStiffness, EdgeLengths, FaceAreas, Membrane, StrainLimit, StretchLimit,
+};
 use koiter::material::{Homogeneous, StVenantKirchhoff};
 use koiter::mesh::{Surface, TriMesh};
 use koiter::rest::{RestFrame, rest_frames};
@@ -286,6 +289,53 @@ fn ds_tan_conforms() {
     check_hinge::<Tangent>();
 }
 
+/// Of any weight and stiffness, with rest angles and branches beyond half a turn.
+#[test]
+fn hinges_of_discrete_shells_conform() {
+    let s = patch(1.0);
+    for weight in [HingeWeight::Circumcentric, HingeWeight::Simplified] {
+        let springs = HingeSprings {
+            weight,
+            stiffness: Some(1.7),
+        };
+        let (frames, rigidity) = (&s.frames, rigidity(&s));
+        let mut energy = DiscreteShells::<Identity>::with_springs(
+            &s.rest,
+            Dof(0),
+            frames,
+            true,
+            &rigidity,
+            springs,
+        );
+        for hinge in 0..energy.num_stencils() {
+            energy.set_rest(hinge, &[3.5 + 0.1 * hinge as f64]);
+            energy.follow(hinge, &[3.0 + 0.8 * hinge as f64]);
+        }
+        let claims = claims(&s, false);
+        check(energy, &s.layout, &s.q, |e, h, q| e.formula(h, q), &claims).unwrap();
+    }
+}
+
+#[test]
+fn the_membrane_of_discrete_shells_conforms() {
+    let s = patch(1.0);
+    let (mesh, section) = (&s.rest.mesh, section(&s));
+    let given = DiscreteStiffness {
+        edges: Some(1.3),
+        areas: Some(0.4),
+    };
+    // The material of the patch has no stiffness of areas: it is given.
+    for rest in [0.0, 0.2] {
+        let mut lengths = EdgeLengths::new(mesh, Dof(0), &s.frames, &section, Default::default());
+        let mut areas = FaceAreas::new(mesh, Dof(0), &s.frames, &section, given);
+        (0..lengths.num_stencils()).for_each(|edge| lengths.set_rest(edge, &[rest]));
+        (0..areas.num_stencils()).for_each(|face| areas.set_rest(face, &[rest]));
+        let claims = claims(&s, rest == 0.0);
+        check(lengths, &s.layout, &s.q, |e, i, q| e.formula(i, q), &claims).unwrap();
+        check(areas, &s.layout, &s.q, |e, i, q| e.formula(i, q), &claims).unwrap();
+    }
+}
+
 #[test]
 fn ch_es_conforms() {
     let s = patch(1.0);
@@ -543,6 +593,53 @@ impl<L: LocalEnergy<9, 3>> LocalEnergy<9, 3> for Planted<L> {
     fn describe(&self, stencil: usize) -> String {
         self.honest.describe(stencil)
     }
+}
+
+/// With the measures of a state for rest values nothing pulls there, and the energy is what it was with the old ones again.
+fn check_rest_measures<const N: usize, const K: usize>(
+    s: &Setup,
+    layout: &DofLayout,
+    q: &[f64],
+    local: impl LocalEnergy<N, K>,
+) {
+    let mut energy = Assembled::new(local, layout);
+    let (before, name) = (energy.value(q), energy.name());
+    let at_rest = energy.rest_measures().expect("it has measures").rest();
+    let measures = energy.rest_measures_mut().unwrap();
+    let now = measures.measure(q);
+    measures.set_rest(&now);
+    assert_eq!(measures.rest(), now);
+    let (mut gradient, mut scale) = (vec![0.0; q.len()], vec![0.0; q.len()]);
+    energy.add_gradient(q, &mut gradient);
+    energy.add_gradient(&s.at_rest, &mut scale[..s.at_rest.len()]);
+    let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, g| m.max(g.abs()));
+    assert!(largest(&gradient) < 1e-12 * largest(&scale), "{name}");
+    let measures = energy.rest_measures_mut().unwrap();
+    measures.set_rest(&at_rest);
+    measures.set_factor(2.5);
+    assert!((energy.value(q) - 2.5 * before).abs() < 1e-14 * before);
+}
+
+#[test]
+fn energies_with_rest_values_take_those_that_are_measured() {
+    let s = patch(1.0);
+    check_rest_measures(&s, &s.layout, &s.q, mid_edge::<Tangent>(&s, true));
+    check_rest_measures(&s, &s.layout, &s.q, mid_edge::<Sine>(&s, true));
+    check_rest_measures(&s, &s.layout, &s.q, membrane(&s));
+    check_rest_measures(&s, &s.layout, &s.q, hinge::<Identity>(&s, true));
+    check_rest_measures(&s, &s.layout, &s.q, hinge::<Tangent>(&s, true));
+    check_rest_measures(&s, &s.layout, &s.q, corotational_edge(&s, true));
+    check_rest_measures(&s, &s.layout, &s.q, corotational_face(&s, true));
+    check_rest_measures(&s, &s.layout, &s.q, mid_edge_average(&s, true));
+    let (mesh, section) = (&s.rest.mesh, section(&s));
+    let lengths = EdgeLengths::new(mesh, Dof(0), &s.frames, &section, Default::default());
+    check_rest_measures(&s, &s.layout, &s.q, lengths);
+    let given = DiscreteStiffness {
+        edges: None,
+        areas: Some(0.4),
+    };
+    let areas = FaceAreas::new(mesh, Dof(0), &s.frames, &section, given);
+    check_rest_measures(&s, &s.layout, &s.q, areas);
 }
 
 #[test]

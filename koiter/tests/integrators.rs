@@ -149,6 +149,25 @@ fn newmark_is_of_second_order() {
 }
 
 #[test]
+fn damping_keeps_the_order() {
+    for bending in [BendingModel::DsTheta, BendingModel::Bac] {
+        for (integrator, order) in [
+            (IntegratorKind::ImplicitEuler, 1.0),
+            (IntegratorKind::Bdf2, 2.0),
+            (IntegratorKind::Newmark, 2.0),
+        ] {
+            let mut model = vibrating(bending, integrator);
+            model.shells[0].composition.damping = DampingOptions {
+                mass: 20.0,
+                stiffness: 1e-3,
+                hinges: 1e-6,
+            };
+            assert_order(&model, 0.01, 1e-4, order);
+        }
+    }
+}
+
+#[test]
 fn bdf2_keeps_its_order_with_steps_that_change() {
     let model = vibrating(BendingModel::DsTheta, IntegratorKind::Bdf2);
     let run = |dt: f64| {
@@ -252,6 +271,7 @@ fn newmark_damps_with_a_larger_gamma_and_bdf2_less_than_euler() {
         model.solver.newmark = NewmarkOptions {
             beta: 0.5 * gamma,
             gamma,
+            ..Default::default()
         };
         energy_error(model, 1e-3)
     };
@@ -356,6 +376,7 @@ fn struck(integrator: IntegratorKind) -> Model {
     model.solver.newmark = NewmarkOptions {
         beta: 0.4,
         gamma: 0.8,
+        ..Default::default()
     };
     model
 }

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use super::energy::WorstElement;
 use super::{
     Dof, DofLayout, Energy, HessianBuilder, LocalEnergy, LocalHessian, NodeId, Pattern,
-    PatternBuilder, PsdProjection, ordered_sum, parallel_map,
+    PatternBuilder, PsdProjection, RestMeasures, ordered_sum, parallel_map,
 };
 
 /// Elements whose Hessians are held at a time: few enough to stay in the cache, enough to occupy all cores.
@@ -20,6 +20,8 @@ pub struct Assembled<L, const N: usize, const K: usize> {
     /// missing or a node is not solved for.
     slots: Vec<u32>,
     num_solved_nodes: u32,
+    /// Of all derivatives.
+    factor: f64,
     /// The element that bounded the last step most.
     limiter: Option<usize>,
 }
@@ -42,6 +44,7 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
             nodes,
             slots: Vec::new(),
             num_solved_nodes: layout.num_solved_nodes() as u32,
+            factor: 1.0,
             limiter: None,
         }
     }
@@ -79,7 +82,7 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
                     .iter_mut()
                     .zip(&local.as_slice()[row..row + size])
                 {
-                    *g += l;
+                    *g += self.factor * l;
                 }
             }
             row += size;
@@ -101,7 +104,7 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
             for (j, node_j) in self.nodes[stencil][..=i].iter().enumerate() {
                 if let (Some((_, a)), Some((_, b))) = (node_i, node_j) {
                     let (row, column) = (starts[i], starts[j]);
-                    let entry = |r, c| local[(row + r, column + c)];
+                    let entry = |r, c| self.factor * local[(row + r, column + c)];
                     match self.slots[slot] {
                         NO_SLOT => hessian.add(*a, *b, i == j, entry),
                         slot => hessian.add_at(slot, *a, *b, i == j, entry),
@@ -140,12 +143,19 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
     }
 
     fn value(&self, q: &[f64]) -> f64 {
-        ordered_sum(self.nodes.len(), |s| {
+        if self.factor == 0.0 {
+            return 0.0;
+        }
+        let sum = ordered_sum(self.nodes.len(), |s| {
             self.local.value(s, &self.gather(s, q))
-        })
+        });
+        self.factor * sum
     }
 
     fn add_gradient(&self, q: &[f64], gradient: &mut [f64]) {
+        if self.factor == 0.0 {
+            return;
+        }
         let locals = parallel_map(self.nodes.len(), |s| {
             self.local.gradient(s, &self.gather(s, q)).1
         });
@@ -162,7 +172,11 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
         gradient: &mut [f64],
         hessian: &mut HessianBuilder<'_>,
     ) {
-        let count = self.nodes.len();
+        let count = if self.factor == 0.0 {
+            0
+        } else {
+            self.nodes.len()
+        };
         let evaluate = |first: usize| {
             parallel_map(BATCH.min(count.saturating_sub(first)), |k| {
                 self.evaluate(first + k, q, projection)
@@ -227,6 +241,17 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
         bound
     }
 
+    fn rest_measures(&self) -> Option<&dyn RestMeasures> {
+        (L::MEASURES > 0).then_some(self)
+    }
+
+    fn rest_measures_mut(&mut self) -> Option<&mut dyn RestMeasures> {
+        match L::MEASURES {
+            0 => None,
+            _ => Some(self),
+        }
+    }
+
     fn step_limiter(&self) -> Option<String> {
         let element = self.local.describe(self.limiter?);
         Some(format!("{} at {element}", self.name()))
@@ -246,7 +271,7 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
         let norms = parallel_map(self.nodes.len(), |s| {
             let (value, gradient) = self.local.gradient(s, &self.gather(s, q));
             if value.is_finite() {
-                gradient.norm()
+                self.factor * gradient.norm()
             } else {
                 f64::NAN
             }
@@ -268,5 +293,43 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
         layout: &DofLayout,
     ) -> Option<Box<dyn Energy + 'a>> {
         (self.local).at_held_positions(&|stencil| self.gather(stencil, q), layout)
+    }
+}
+
+impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> RestMeasures for Assembled<L, N, K> {
+    fn measure(&self, q: &[f64]) -> Vec<f64> {
+        let mut all = vec![0.0; self.nodes.len() * L::MEASURES];
+        for (stencil, measures) in all.chunks_exact_mut(L::MEASURES).enumerate() {
+            (self.local).measure(stencil, &self.gather(stencil, q), measures);
+        }
+        all
+    }
+
+    fn rest(&self) -> Vec<f64> {
+        let mut all = vec![0.0; self.nodes.len() * L::MEASURES];
+        for (stencil, measures) in all.chunks_exact_mut(L::MEASURES).enumerate() {
+            self.local.rest(stencil, measures);
+        }
+        all
+    }
+
+    fn set_rest(&mut self, rest: &[f64]) {
+        for (stencil, measures) in rest.chunks_exact(L::MEASURES).enumerate() {
+            self.local.set_rest(stencil, measures);
+        }
+    }
+
+    fn has_branches(&self) -> bool {
+        L::HAS_BRANCHES
+    }
+
+    fn follow(&mut self, measures: &[f64]) {
+        for (stencil, measures) in measures.chunks_exact(L::MEASURES).enumerate() {
+            self.local.follow(stencil, measures);
+        }
+    }
+
+    fn set_factor(&mut self, factor: f64) {
+        self.factor = factor;
     }
 }

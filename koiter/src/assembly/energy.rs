@@ -75,6 +75,10 @@ pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
     const NODE_SIZES: [usize; K];
     /// Whether [`Self::max_step`] says anything: most energies are spared the question.
     const BOUNDS_STEPS: bool = false;
+    /// Measures of strain of an element, if φ_s depends on them and on their rest values alone: see [`RestMeasures`].
+    const MEASURES: usize = 0;
+    /// Whether measures are angles that are followed beyond half a turn.
+    const HAS_BRANCHES: bool = false;
     /// Name in reports.
     fn name(&self) -> &'static str;
     /// Number of elements.
@@ -103,6 +107,14 @@ pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
     fn is_admissible(&self, _stencil: usize, _q: &SVector<f64, N>) -> bool {
         true
     }
+    /// Writes the [`Self::MEASURES`] of an element.
+    fn measure(&self, _stencil: usize, _q: &SVector<f64, N>, _measures: &mut [f64]) {}
+    /// Writes their rest values.
+    fn rest(&self, _stencil: usize, _measures: &mut [f64]) {}
+    /// Replaces their rest values.
+    fn set_rest(&mut self, _stencil: usize, _measures: &[f64]) {}
+    /// See [`RestMeasures::follow`].
+    fn follow(&mut self, _stencil: usize, _measures: &[f64]) {}
     /// The element in the user's terms.
     fn describe(&self, stencil: usize) -> String;
     /// See [`Energy::at_held_positions`]; `unknowns` gives those of an element.
@@ -124,6 +136,25 @@ pub struct WorstElement {
     pub unknown: Option<Dof>,
     /// Norm of its gradient [N or N·m]; not finite if the energy is not.
     pub gradient_norm: f64,
+}
+
+/// What an energy compares: measures of strain `s(q)`, and the values `s̄` that they have at rest, Φ = Φ(s(q) − s̄).
+///
+/// Lists are those of all elements in order, each with its measures: strains, hinge angles [rad], second fundamental forms
+/// [1/m]. None of them changes under rigid motions.
+pub trait RestMeasures {
+    /// s(q).
+    fn measure(&self, q: &[f64]) -> Vec<f64>;
+    /// s̄.
+    fn rest(&self) -> Vec<f64>;
+    /// Replaces s̄.
+    fn set_rest(&mut self, rest: &[f64]);
+    /// Whether measures are angles that are followed beyond half a turn.
+    fn has_branches(&self) -> bool;
+    /// Takes the branch of each angle that is nearest to these measures from now on.
+    fn follow(&mut self, measures: &[f64]);
+    /// Φ becomes this factor times what it was made as.
+    fn set_factor(&mut self, factor: f64);
 }
 
 /// An energy over all unknowns, as solver and integrator see it.
@@ -158,6 +189,14 @@ pub trait Energy: Send + Sync {
     /// keeps the candidates of the whole way for the evaluations of the line search.
     fn max_step(&mut self, _q: &[f64], _direction: &[f64]) -> f64 {
         1.0
+    }
+    /// Measures of strain and their rest values, if Φ depends on them alone.
+    fn rest_measures(&self) -> Option<&dyn RestMeasures> {
+        None
+    }
+    /// [`Self::rest_measures`], to change the rest values.
+    fn rest_measures_mut(&mut self) -> Option<&mut dyn RestMeasures> {
+        None
     }
     /// Whether Φ is defined at `q`.
     fn is_admissible(&self, _q: &[f64]) -> bool {

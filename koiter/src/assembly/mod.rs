@@ -14,7 +14,9 @@ mod space;
 
 pub use assembled::Assembled;
 pub use dof::{Dof, DofLayout, NodeId};
-pub use energy::{Energy, LocalEnergy, LocalHessian, PsdProjection, WorstElement, variables};
+pub use energy::{
+    Energy, LocalEnergy, LocalHessian, PsdProjection, RestMeasures, WorstElement, variables,
+};
 pub use matrix::{CoupledPairs, HessianBuilder, Pattern, PatternBuilder, SymmetricMatrix};
 pub use parallel::{ordered_sum, parallel_map};
 pub use projection::project_to_psd;

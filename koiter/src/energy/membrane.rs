@@ -6,7 +6,8 @@
 //!
 //! Ā rest area [m²], W energy of stretching per unit area of the [`Section`] [J/m²], D the rest edges in an orthonormal
 //! basis ([`RestFrame`]). For a St. Venant–Kirchhoff material of thickness h this is `(h/4) Ā (α/2 tr(S)² + β tr(S²))`, `S = Ī⁻¹(I − Ī)`. Reference:
-//! "Better Bending" (2026), Eqs. (4) and (22); the factor there is printed h/2, the strain is S/2.
+//! "Better Bending" (2026), Eqs. (4) and (22); the factor there is printed h/2, the strain is S/2. From ε a rest strain ε̄ is
+//! taken away, which is zero but in dampers.
 //!
 //! The Hessian splits exactly into motions in the plane of the face and out of it: out of the plane it is the stress
 //! alone, a 2 × 2 matrix. Both parts are projected by themselves, in 4 and 2 dimensions.
@@ -26,6 +27,8 @@ pub struct Membrane<S> {
     faces: Vec<[Dof; 3]>,
     frames: Vec<RestFrame>,
     section: S,
+    /// ε̄ of every face.
+    rest_strains: Vec<Vector3<f64>>,
 }
 
 impl<S: Section> Membrane<S> {
@@ -38,6 +41,7 @@ impl<S: Section> Membrane<S> {
             .collect();
         Self {
             faces,
+            rest_strains: vec![Vector3::zeros(); frames.len()],
             frames,
             section,
         }
@@ -55,7 +59,8 @@ impl<S: Section> Membrane<S> {
 
     /// Energy, ∂E/∂ε and ∂²E/∂ε² of a face.
     fn response(&self, face: usize, columns: &[Vec3; 2]) -> Response {
-        let response = self.section.stretch(face, &green_strain(columns));
+        let strain = green_strain(columns) - self.rest_strains[face];
+        let response = self.section.stretch(face, &strain);
         response.scaled(self.frames[face].area)
     }
 
@@ -185,6 +190,7 @@ fn geometric_part(
 
 impl<S: Section> LocalEnergy<9, 3> for Membrane<S> {
     const NODE_SIZES: [usize; 3] = [3; 3];
+    const MEASURES: usize = 3;
 
     fn name(&self) -> &'static str {
         "membrane"
@@ -220,8 +226,20 @@ impl<S: Section> LocalEnergy<9, 3> for Membrane<S> {
     }
 
     fn is_admissible(&self, stencil: usize, q: &SVector<f64, 9>) -> bool {
-        let strain = green_strain(&self.columns(stencil, q));
+        let strain = green_strain(&self.columns(stencil, q)) - self.rest_strains[stencil];
         self.section.is_admissible(stencil, &strain)
+    }
+
+    fn measure(&self, stencil: usize, q: &SVector<f64, 9>, measures: &mut [f64]) {
+        measures.copy_from_slice(green_strain(&self.columns(stencil, q)).as_slice());
+    }
+
+    fn rest(&self, stencil: usize, measures: &mut [f64]) {
+        measures.copy_from_slice(self.rest_strains[stencil].as_slice());
+    }
+
+    fn set_rest(&mut self, stencil: usize, measures: &[f64]) {
+        self.rest_strains[stencil] = Vector3::from_column_slice(measures);
     }
 
     fn describe(&self, stencil: usize) -> String {
@@ -237,10 +255,11 @@ impl<S> Membrane<S> {
         let edge = |c: usize, axis: usize| q[3 * c + axis] - q[axis];
         let f1: [R; 3] = std::array::from_fn(|k| edge(1, k) * m11);
         let f2: [R; 3] = std::array::from_fn(|k| edge(1, k) * m12 + edge(2, k) * m22);
+        let rest = &self.rest_strains[face];
         let strain = [
-            (dot(&f1, &f1) - 1.0) * 0.5,
-            (dot(&f2, &f2) - 1.0) * 0.5,
-            dot(&f1, &f2) * 0.5,
+            (dot(&f1, &f1) - 1.0) * 0.5 - rest.x,
+            (dot(&f2, &f2) - 1.0) * 0.5 - rest.y,
+            dot(&f1, &f2) * 0.5 - rest.z,
         ];
         density(strain) * self.frames[face].area
     }

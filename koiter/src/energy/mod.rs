@@ -1,5 +1,6 @@
 //! Local energies: one file, one model. Each opens with its formula, symbols, units, source and limits.
 
+mod discrete_membrane;
 mod gravity;
 mod inertia;
 mod membrane;
@@ -8,6 +9,7 @@ mod strain_limit;
 pub mod bending;
 pub mod loads;
 
+pub use discrete_membrane::{DiscreteStiffness, EdgeLengths, FaceAreas};
 pub use gravity::Gravity;
 pub use inertia::Inertia;
 pub use membrane::Membrane;

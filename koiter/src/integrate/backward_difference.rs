@@ -11,10 +11,14 @@
 //! 1 + √2 on), is one of implicit Euler. Both are unconditionally stable; Euler is of first order and damps what moves
 //! fast, BDF2 of second order and damps only what moves in a few steps.
 //!
+//! Rates of strain, for damping, follow from strains as velocities from positions: (s − ŝ)/τ with ŝ = s_n or
+//! s_n + c (s_n − s_{n−1}).
+//!
 //! Linear momentum is conserved; of Euler the sum of `x_{n+1} × M (v_{n+1} − v_n)` vanishes too, but angular momentum
 //! `x × M v` is conserved only up to the order of the step. Reference: E. Hairer, S. P. Nørsett, G. Wanner, "Solving
 //! Ordinary Differential Equations I" (1993), section III.5 (variable steps).
 
+use super::damping::RateRule;
 use super::{Integrator, Memory, Prescribed, State, StepError, StepReport, System};
 use crate::energy::Inertia;
 
@@ -40,6 +44,8 @@ struct Base {
     q: Vec<f64>,
     velocities: Vec<f64>,
     reach: f64,
+    /// q̂ is the sum of configurations with these weights.
+    combination: Vec<(f64, Vec<f64>)>,
 }
 
 impl Base {
@@ -48,6 +54,7 @@ impl Base {
             q: state.q.clone(),
             velocities: state.velocities.clone(),
             reach: dt,
+            combination: vec![(1.0, state.q.clone())],
         }
     }
 
@@ -73,6 +80,7 @@ impl Base {
             q: beyond(&state.q, q),
             velocities: beyond(&state.velocities, velocities),
             reach: dt * (1.0 + ratio) / (1.0 + 2.0 * ratio),
+            combination: vec![(1.0 + share, state.q.clone()), (-share, q.clone())],
         }
     }
 
@@ -90,7 +98,12 @@ impl Base {
             q: base,
             velocities: base_velocities,
             reach,
+            combination,
         } = self;
+        (system.damping).begin(&RateRule {
+            reach,
+            base: combination,
+        });
         let moving = base.iter().zip(&base_velocities);
         let mut inertia = Inertia {
             masses: system.masses.clone(),

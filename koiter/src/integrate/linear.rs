@@ -200,6 +200,8 @@ impl System {
         energies.push(&mut self.clamps);
         energies.push(&mut self.symmetry);
         let elastic = energies.len();
+        energies.extend(self.damping.energies());
+        let damped = energies.len();
         energies.push(&mut self.gravity);
         energies.push(&mut self.loads);
         (self.workspace).update_pattern(&mut energies, &self.layout, q);
@@ -211,8 +213,9 @@ impl System {
         for (index, energy) in energies.iter().enumerate() {
             let is_wanted = match part {
                 Part::Elastic => index < elastic,
-                Part::Loads => index >= elastic,
-                Part::All => true,
+                Part::Loads => index >= damped,
+                Part::All => index < elastic || index >= damped,
+                Part::Motion => true,
             };
             if is_wanted {
                 let mut hessian = HessianBuilder {
@@ -222,7 +225,7 @@ impl System {
                     coupling: &mut coupling,
                 };
                 energy.add_derivatives(q, PsdProjection::Exact, &mut gradient, &mut hessian);
-            } else {
+            } else if !(elastic..damped).contains(&index) {
                 energy.add_gradient(q, &mut gradient);
             }
         }
@@ -287,6 +290,8 @@ pub(super) enum Part {
     Loads,
     /// Both.
     All,
+    /// Both, and damping as it acts.
+    Motion,
 }
 
 fn add(sum: &mut SymmetricMatrix, factor: f64, matrix: &SymmetricMatrix) {

@@ -19,6 +19,7 @@ impl Integrator for LinearStatic {
         dt: f64,
     ) -> Result<StepReport, StepError> {
         let step = state.step + 1;
+        system.damping.rest();
         let response = system.linear_response(&state.q, prescribed);
         let u = response.map_err(|error| StepError::LinearSolve {
             step,

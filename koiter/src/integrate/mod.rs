@@ -2,7 +2,9 @@
 
 mod arc_length;
 mod backward_difference;
+mod damping;
 mod diagnostics;
+mod energy_monitor;
 mod linear;
 mod linear_static;
 mod load_pattern;
@@ -11,12 +13,14 @@ mod offset_surface;
 mod quasi_static;
 mod report;
 mod rest_directors;
+mod shell_part;
 mod stable_step;
 mod state;
 mod system;
 
 pub use arc_length::{ArcLength, ArcLengthOptions, PathPoint};
 pub use backward_difference::{Bdf2, ImplicitEuler};
+pub use damping::{Damper, Damping};
 pub use diagnostics::{Diagnostics, LargestForce};
 pub use linear::{BucklingMode, LinearError, VibrationMode};
 pub use linear_static::LinearStatic;
@@ -26,12 +30,13 @@ pub use offset_surface::OffsetSurfaces;
 pub use quasi_static::QuasiStatic;
 pub use report::{StepError, StepReport};
 pub use rest_directors::{relax_directors, relax_edge_points};
+pub use shell_part::ShellPart;
 pub use state::{Memory, State};
-pub use system::{Prescribed, ShellPart, System};
+pub use system::{Prescribed, System};
 
 /// Advances a state.
 pub trait Integrator: Send {
-    /// Called before a step while loads, clamps and what is held are still as at its start: for what a method has to know
+    /// Called before a step of size `dt` [s] while loads, clamps and what is held are still as at its start: for what a method has to know
     /// of that state and does not remember.
     ///
     /// # Errors
@@ -41,6 +46,7 @@ pub trait Integrator: Send {
         _system: &mut System,
         _state: &mut State,
         _is_fixed: &[bool],
+        _dt: f64,
     ) -> Result<(), StepError> {
         Ok(())
     }

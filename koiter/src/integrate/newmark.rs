@@ -10,12 +10,20 @@
 //! M masses, Φ all energies [J]. With γ = 1/2 the method is of second order and damps nothing: linear momentum is
 //! conserved, and so is Σ m (x − β dt² a) × v; energy is kept up to dt² but not bounded by it, so stiff membranes and
 //! contacts gain energy in steps that are long for them: cloth of 2450 triangles that falls on a ball in steps of 20 ms has
-//! six times its energy after 0.6 s. Shorter steps help, or γ > 1/2, which damps in first order. β = 1/4 is stable for any step in linear problems;
+//! six times its energy after 0.6 s. Shorter steps help, or γ > 1/2, which damps in first order, or damping; gains can be
+//! watched, and the steps that have them be cut ([`Newmark::energy_growth`]). β = 1/4 is stable for any step in linear problems;
 //! β = 0 only below 2/ω of the fastest vibration, see [`super::stable_step`].
+//!
+//! Damping takes rates of strain ṡ_{n+1} = 2 (s_{n+1} − s_n)/dt − ṡ_n in implicit steps, whatever β: of second order, as the
+//! method, and a function of s alone, so that both momenta stay what they are. Explicit steps take the mean rate of the step,
+//! half a step late: of first order in the damping. Their longest stable step is (√(1 + ξ²) − ξ) 2/ω, ξ the share of critical
+//! damping.
 //!
 //! What is prescribed has the velocity and acceleration of backward differences, and so has what has no mass: the rule
 //! above would let them ring for ever. Reference: N. M. Newmark, "A method of computation for structural dynamics" (1959).
 
+use super::damping::RateRule;
+use super::energy_monitor::EnergyMonitor;
 use super::system::Solved;
 use super::{Integrator, Memory, Prescribed, State, StepError, StepReport, System};
 use crate::energy::Inertia;
@@ -27,6 +35,8 @@ pub struct Newmark {
     pub beta: f64,
     /// γ: 1/2; more damps.
     pub gamma: f64,
+    /// A step that gains more energy than this share of the largest kinetic energy so far is refused; `None`: not watched.
+    pub energy_growth: Option<f64>,
     /// Newton stops when no point moved faster than this in the last step [m/s].
     pub velocity_tolerance: f64,
 }
@@ -71,6 +81,37 @@ impl Newmark {
         next
     }
 
+    /// Refuses a step that has gained energy, where that is watched.
+    fn watch(
+        &self,
+        system: &mut System,
+        state: &State,
+        next: &mut State,
+        prescribed: &Prescribed,
+    ) -> Result<(), StepError> {
+        let Some(largest_share) = self.energy_growth else {
+            return Ok(());
+        };
+        let kinetic_so_far = |memory: &Memory| match memory {
+            Memory::Accelerated {
+                largest_kinetic, ..
+            } => *largest_kinetic,
+            _ => 0.0,
+        };
+        let monitor = EnergyMonitor {
+            largest_share,
+            largest_kinetic: kinetic_so_far(&state.memory),
+        };
+        let kinetic = monitor.check(system, [state, next], prescribed)?;
+        if let Memory::Accelerated {
+            largest_kinetic, ..
+        } = &mut next.memory
+        {
+            *largest_kinetic = kinetic;
+        }
+        Ok(())
+    }
+
     fn implicit_step(
         &self,
         system: &mut System,
@@ -78,6 +119,8 @@ impl Newmark {
         prescribed: &Prescribed,
         dt: f64,
     ) -> Result<StepReport, StepError> {
+        let rates = RateRule::trapezoidal(&state.q, &state.velocities, dt);
+        system.damping.begin(&rates);
         let reach = self.beta.sqrt() * dt;
         let prediction = self.prediction(state, dt);
         let mut inertia = Inertia {
@@ -91,15 +134,17 @@ impl Newmark {
         let solved = system
             .solve(&mut q, Some(&mut inertia), start, prescribed, tolerance)
             .map_err(|error| (state.step + 1, error))?;
-        let next = self.next(
+        let mut next = self.next(
             (&*state, q, dt),
             (&system.masses, &prescribed.is_fixed),
             |i, q| (q[i] - prediction[i]) / (reach * reach),
             Memory::Accelerated {
                 stable_dt: f64::INFINITY,
                 age: 0,
+                largest_kinetic: 0.0,
             },
         );
+        self.watch(system, state, &mut next, prescribed)?;
         let report = StepReport {
             dt,
             residual: solved.newton.last_step / dt,
@@ -117,9 +162,9 @@ impl Newmark {
     ) -> Result<StepReport, StepError> {
         let step = state.step + 1;
         let (stable_dt, age) = match state.memory {
-            Memory::Accelerated { stable_dt, age } if age < ESTIMATE_EVERY => (stable_dt, age),
+            Memory::Accelerated { stable_dt, age, .. } if age < ESTIMATE_EVERY => (stable_dt, age),
             _ => (
-                SAFETY * system.stable_step(&state.q, &prescribed.is_fixed),
+                SAFETY * system.stable_step(&state.q, &prescribed.is_fixed, dt),
                 0,
             ),
         };
@@ -137,17 +182,20 @@ impl Newmark {
                 *x = prescribed.target[i];
             }
         }
+        system.damping.begin(&RateRule::backward(&state.q, dt));
         let gradient = system.total_gradient(&q).map_err(|error| (step, error))?;
         let masses = &system.masses;
-        let next = self.next(
+        let mut next = self.next(
             (&*state, q, dt),
             (masses, &prescribed.is_fixed),
             |i, _| -gradient[i] / masses[i],
             Memory::Accelerated {
                 stable_dt,
                 age: age + 1,
+                largest_kinetic: 0.0,
             },
         );
+        self.watch(system, state, &mut next, prescribed)?;
         let report = StepReport {
             dt,
             ..Default::default()
@@ -163,10 +211,13 @@ impl Integrator for Newmark {
         system: &mut System,
         state: &mut State,
         is_fixed: &[bool],
+        dt: f64,
     ) -> Result<(), StepError> {
         if matches!(state.memory, Memory::Accelerated { .. }) {
             return Ok(());
         }
+        let rates = RateRule::at_start(&state.q, &state.velocities, dt);
+        system.damping.begin(&rates);
         let gradient =
             (system.total_gradient(&state.q)).map_err(|error| (state.step + 1, error))?;
         state.accelerations.fill(0.0);

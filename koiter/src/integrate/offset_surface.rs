@@ -8,7 +8,7 @@
 //! along the directors d, measures both in metres. Reference: "Better Bending" (2026), Eqs. (53), (54). Where vertices
 //! have directors, `x_i^off = x_i + (h/2) d_i`. Models without directors are measured by their points.
 
-use super::system::ShellPart;
+use super::shell_part::ShellPart;
 use crate::Vec3;
 use crate::assembly::{ConfigurationSpace, parallel_map};
 use crate::energy::bending::ExtraUnknowns;

@@ -2,6 +2,9 @@
 
 use super::diagnostics::Diagnostics;
 
+/// Names of energies that a step takes away: they add up over its parts.
+const TAKEN_IN_A_STEP: [&str; 2] = ["friction", "damping"];
+
 /// What one step did. Not converging is told here; it is not an error.
 #[derive(Clone, Debug, Default)]
 pub struct StepReport {
@@ -19,7 +22,8 @@ pub struct StepReport {
     pub converged: bool,
     /// The last Newton step, measured on the offset surfaces and divided by `dt` [m/s] (statics: [m]).
     pub residual: f64,
-    /// Energies by name [J] at the end of the step; `friction` is what the step's sliding took, not stored energy.
+    /// Energies by name [J] at the end of the step; `friction` is what the step's sliding took and `damping` what its damping
+    /// took, by the forces at its end: neither is stored energy.
     pub energies: Vec<(&'static str, f64)>,
     /// Seconds spent, by part; the names are snake_case, like all keys of results.
     pub seconds: Vec<(&'static str, f64)>,
@@ -62,15 +66,11 @@ impl StepReport {
     /// Appends the next part of a step: efforts add up, the state is that at its end.
     pub fn add_part(&mut self, part: Self) {
         self.add_effort(&part);
-        let slid = |energies: &[(&'static str, f64)]| {
-            let friction = energies.iter().find(|(name, _)| *name == "friction");
-            friction.map_or(0.0, |(_, taken)| *taken)
-        };
-        let slid_before = slid(&self.energies);
         let mut energies = part.energies;
         for (name, value) in &mut energies {
-            if *name == "friction" {
-                *value += slid_before;
+            if TAKEN_IN_A_STEP.contains(name) {
+                let before = self.energies.iter().find(|(known, _)| known == name);
+                *value += before.map_or(0.0, |(_, taken)| *taken);
             }
         }
         *self = Self {
@@ -133,6 +133,20 @@ pub enum StepError {
         dt: f64,
         /// The longest stable step [s], estimated.
         stable_dt: f64,
+    },
+    /// A step that gained energy, where that is watched.
+    #[error(
+        "step {step} gained {gained:.2e} J from nowhere, with {kinetic:.2e} J of kinetic energy at most so far: take smaller \
+         steps (time.dt), damp what moves fast with solver.newmark.gamma above 0.5 or the damping of a shell, or allow more \
+         (solver.newmark.energy_growth)"
+    )]
+    EnergyGrew {
+        /// Step number.
+        step: usize,
+        /// What it gained beyond the work at what is prescribed [J].
+        gained: f64,
+        /// The largest kinetic energy so far [J].
+        kinetic: f64,
     },
     /// The accepted state has surfaces that intersect: a bug, never silent.
     #[error("surfaces intersect after step {step}: {details}")]

@@ -42,6 +42,8 @@ pub enum Memory {
         stable_dt: f64,
         /// Explicit steps since that was found.
         age: u64,
+        /// The largest kinetic energy so far [J], where gains of energy are watched; else 0.
+        largest_kinetic: f64,
     },
 }
 

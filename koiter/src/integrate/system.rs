@@ -1,26 +1,16 @@
 //! Everything a step needs: unknowns, energies, masses, contact, and the workspace of the solver.
 
-use std::ops::Range;
-use std::sync::Arc;
-
-use nalgebra::Vector3;
-
+use super::damping::Damping;
 use super::diagnostics::{Diagnostics, LargestForce};
 use super::offset_surface::OffsetSurfaces;
 use super::report::{StepError, StepReport};
+use super::shell_part::ShellPart;
 use super::state::State;
-use crate::Vec3;
-use crate::assembly::{Assembled, Dof, DofLayout, Energy};
+use crate::assembly::{Assembled, DofLayout, Energy};
 use crate::contact::{Contact, Friction};
-use crate::energy::bending::{
-    BendingStencil, DirectorClamp, DirectorShape, ExtraUnknowns, SymmetryEdges, curvatures,
-    directors, kirchhoff_forms,
-};
+use crate::energy::bending::{DirectorClamp, SymmetryEdges};
 use crate::energy::loads::Loads;
 use crate::energy::{Gravity, Inertia};
-use crate::material::Section;
-use crate::mesh::TriMesh;
-use crate::rest::RestFrame;
 use crate::solve::{
     HessianChoice, LinearWorkspace, NewtonOptions, NewtonReport, Problem, SolveError, minimize,
     minimize_stably,
@@ -35,103 +25,14 @@ pub struct Prescribed {
     pub target: Vec<f64>,
 }
 
-/// A shell's place among the unknowns, and what its kinematics needs.
-#[derive(Clone, Debug)]
-pub struct ShellPart {
-    /// Name in the scene.
-    pub name: String,
-    /// Topology.
-    pub mesh: TriMesh,
-    /// First unknown of vertex 0.
-    pub first_vertex: Dof,
-    /// What its bending model has as unknowns beside the positions of the vertices.
-    pub extra: ExtraUnknowns,
-    /// The first of them.
-    pub first_extra: Dof,
-    /// Rest frames of the faces.
-    pub frames: Vec<RestFrame>,
-    /// Thickness [m].
-    pub thickness: f64,
-    /// What it resists with.
-    pub section: Arc<dyn Section>,
-    /// Rest second fundamental forms in these frames, components `11, 22, 12` [1/m].
-    pub rest_forms: Vec<Vector3<f64>>,
-    /// How directors depend on tilts.
-    pub director_shape: DirectorShape,
-    /// The unknowns of each face and its neighbours.
-    pub stencils: Vec<BendingStencil>,
-}
-
-impl ShellPart {
-    /// The unknowns of all vertices.
-    pub fn vertex_dofs(&self) -> Range<usize> {
-        let start = self.first_vertex.0 as usize;
-        start..start + 3 * self.mesh.num_vertices()
-    }
-
-    /// The unknowns that the bending model adds.
-    pub fn extra_dofs(&self) -> Range<usize> {
-        let start = self.first_extra.0 as usize;
-        start..start + self.extra.num_nodes(&self.mesh) * self.extra.node_size()
-    }
-
-    /// Position of a vertex.
-    pub fn position(&self, vertex: usize, q: &[f64]) -> Vec3 {
-        let start = self.first_vertex.0 as usize + 3 * vertex;
-        Vec3::new(q[start], q[start + 1], q[start + 2])
-    }
-
-    /// Corners of a face.
-    pub fn face_corners(&self, face: usize, q: &[f64]) -> [Vec3; 3] {
-        self.mesh.faces()[face].map(|v| self.position(v as usize, q))
-    }
-
-    /// Directors of the edges of a face, as seen from it.
-    pub fn directors(&self, face: usize, q: &[f64]) -> [Vec3; 3] {
-        directors(&self.stencils[face], self.director_shape, q)
-    }
-
-    /// Largest principal Green strain of a face.
-    pub fn largest_strain(&self, face: usize, q: &[f64]) -> f64 {
-        let x = self.face_corners(face, q);
-        let [f1, f2] = self.frames[face].deformation_gradient(&(x[1] - x[0]), &(x[2] - x[0]));
-        let (a, b, c) = (f1.norm_squared(), f2.norm_squared(), f1.dot(&f2));
-        0.5 * (0.5 * (a + b) + (0.25 * (a - b) * (a - b) + c * c).sqrt() - 1.0)
-    }
-
-    /// Second fundamental form of a face, or its mean over the face, in its rest frame, components `11, 22, 12` [1/m].
-    pub fn second_form(&self, face: usize, q: &[f64]) -> Vector3<f64> {
-        if self.extra == ExtraUnknowns::VertexDirectors {
-            let first = self.first_extra.0 as usize;
-            let directors = self.mesh.faces()[face].map(|v| {
-                let start = first + 3 * v as usize;
-                Vec3::from_column_slice(&q[start..start + 3])
-            });
-            let forms =
-                kirchhoff_forms(&self.frames[face], &self.face_corners(face, q), &directors);
-            return (forms[0] + forms[1] + forms[2]) / 3.0;
-        }
-        let curvature = Vector3::from(curvatures(&self.stencils[face], self.director_shape, q));
-        Vector3::from(
-            self.frames[face]
-                .second_form_matrix()
-                .map(|row| Vector3::from(row).dot(&curvature)),
-        )
-    }
-
-    /// Mean curvature of a face [1/m]: half the trace of the second fundamental form in the rest metric.
-    pub fn mean_curvature(&self, face: usize, q: &[f64]) -> f64 {
-        let form = self.second_form(face, q);
-        0.5 * (form.x + form.y)
-    }
-}
-
 /// The parts of a simulation that do not change with its state.
 pub struct System {
     /// Grouping of the unknowns.
     pub layout: DofLayout,
     /// Membrane and bending of every shell.
     pub elastic: Vec<Box<dyn Energy>>,
+    /// What damps motion.
+    pub damping: Damping,
     /// Clamped edges.
     pub clamps: Assembled<DirectorClamp, 7, 3>,
     /// Edges on planes of symmetry.
@@ -247,10 +148,14 @@ impl System {
         prescribed: &Prescribed,
         options: &NewtonOptions,
     ) -> Result<NewtonReport, SolveError> {
+        if inertia.is_none() {
+            self.damping.rest();
+        }
         let mut energies: Vec<&mut dyn Energy> = Vec::new();
         for energy in &mut self.elastic {
             energies.push(energy.as_mut());
         }
+        energies.extend(self.damping.energies());
         energies.push(&mut self.clamps);
         energies.push(&mut self.symmetry);
         energies.push(&mut self.gravity);
@@ -300,13 +205,7 @@ impl System {
             add(self.loads.name(), self.loads.value(&state.q));
         }
         if self.is_dynamic {
-            let kinetic = self
-                .masses
-                .iter()
-                .zip(&state.velocities)
-                .map(|(m, v)| 0.5 * m * v * v)
-                .sum();
-            add("kinetic", kinetic);
+            add("kinetic", self.kinetic(state));
         }
         if let Some(contact) = &self.contact {
             add("contact", contact.value(&state.q));
@@ -314,8 +213,35 @@ impl System {
         energies
     }
 
-    /// ∇Φ of all energies at `q`, what the forces add up to with the sign changed; contact is brought up to date.
+    pub(super) fn kinetic(&self, state: &State) -> f64 {
+        let moving = self.masses.iter().zip(&state.velocities);
+        moving.map(|(m, v)| 0.5 * m * v * v).sum()
+    }
+
+    /// Φ of all energies, and what holds each unknown in its motion: ∇Φ + M a.
+    pub(super) fn potential_and_reactions(
+        &mut self,
+        state: &State,
+    ) -> Result<(f64, Vec<f64>), SolveError> {
+        let mut reactions = self.gradient_of_energies(&state.q)?;
+        let moving = self.masses.iter().zip(&state.accelerations);
+        for (reaction, (mass, acceleration)) in reactions.iter_mut().zip(moving) {
+            *reaction += mass * acceleration;
+        }
+        let energies = self.energies(state);
+        let potential = energies.iter().filter(|(name, _)| *name != "kinetic");
+        Ok((potential.map(|(_, value)| value).sum(), reactions))
+    }
+
+    /// ∇Φ of all energies at `q` and what damping adds, what the forces add up to with the sign changed.
     pub(super) fn total_gradient(&mut self, q: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let mut gradient = self.gradient_of_energies(q)?;
+        self.damping.add_gradient(q, &mut gradient);
+        Ok(gradient)
+    }
+
+    /// ∇Φ of all energies at `q`; contact is brought up to date.
+    fn gradient_of_energies(&mut self, q: &[f64]) -> Result<Vec<f64>, SolveError> {
         if let Some(contact) = &mut self.contact {
             contact.prepare(q);
             contact.refresh(q);
@@ -389,12 +315,58 @@ impl System {
         report
             .energies
             .extend(friction.map(|taken| ("friction", taken)));
+        if self.is_dynamic {
+            let damped = self.damping.dissipated(&self.layout, &state.q, &next.q);
+            (report.energies).extend(damped.map(|taken| ("damping", taken)));
+        }
+        self.follow(&next.q);
         if !newton.converged {
             report.diagnosis = Some(diagnose(&newton, &diagnostics));
         }
         report.diagnostics = diagnostics;
         *state = next;
         Ok(report)
+    }
+
+    /// Angles of hinges go on from those at `q`, which may be beyond half a turn.
+    pub(crate) fn follow(&mut self, q: &[f64]) {
+        for shell in &self.space.shells {
+            let energy = shell.bending.map(|index| &mut self.elastic[index]);
+            let measures = energy.and_then(|energy| energy.rest_measures_mut());
+            if let Some(measures) = measures.filter(|measures| measures.has_branches()) {
+                let now = measures.measure(q);
+                measures.follow(&now);
+            }
+        }
+        self.damping.follow(q);
+    }
+
+    /// The angles of hinges at `q` as they are followed, of every energy that follows some.
+    pub(crate) fn branches(&self, q: &[f64]) -> Vec<Vec<f64>> {
+        let elastic = self.elastic.iter().map(AsRef::as_ref);
+        let all = elastic.chain(
+            self.damping
+                .dampers
+                .iter()
+                .map(|damper| damper.energy.as_ref()),
+        );
+        let measures = all.filter_map(|energy| energy.rest_measures());
+        measures
+            .filter(|measures| measures.has_branches())
+            .map(|measures| measures.measure(q))
+            .collect()
+    }
+
+    /// Angles go on from these.
+    pub(crate) fn restore_branches(&mut self, angles: &[Vec<f64>]) {
+        let dampers = self.damping.dampers.iter_mut();
+        let elastic = self.elastic.iter_mut();
+        let all = elastic.chain(dampers.map(|damper| &mut damper.energy));
+        let measures = all.filter_map(|energy| energy.rest_measures_mut());
+        let following = measures.filter(|measures| measures.has_branches());
+        for (measures, angles) in following.zip(angles) {
+            measures.follow(angles);
+        }
     }
 
     /// The element of each energy that pulls most; of energies of one name the strongest.

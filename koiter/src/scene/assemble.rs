@@ -6,6 +6,7 @@ use super::composition::CompositionError;
 use super::elastic::{Elastic, rest_surface};
 use super::loads::loads;
 use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
+use super::processes::ProcessError;
 use super::symmetry::symmetry_edges;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout};
@@ -81,6 +82,14 @@ pub enum BuildError {
         /// Name of the shell.
         shell: String,
     },
+    /// A process that cannot act on its shell.
+    #[error("process '{process}': {error}")]
+    Process {
+        /// Name of the process.
+        process: String,
+        /// Why.
+        error: ProcessError,
+    },
     /// A plane of symmetry that a model cannot feel.
     #[error(
         "shell '{shell}': at a plane of symmetry a bending model without directors bends freely, as at a hinge; use bac, dcs, \
@@ -140,6 +149,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     let Elastic {
         energies,
         masses,
+        damping,
         parts,
     } = Elastic::new(model, &unknowns, &mut q)?;
     let (clamps, clamped_edges) = Clamps::new(model, &parts, &q);
@@ -170,6 +180,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
         symmetry: Assembled::new(symmetry, &layout),
         layout,
         elastic: energies,
+        damping,
         gravity,
         loads,
         masses,

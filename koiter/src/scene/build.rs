@@ -4,6 +4,7 @@ mod arc_length;
 mod composition;
 mod loads;
 mod phases;
+mod processes;
 mod symmetry;
 
 use super::document::Document;
@@ -115,6 +116,7 @@ impl Builder<'_> {
             .collect::<Result<_, _>>()?;
         let constraints = self.constraints(&shells)?;
         let loads = self.loads(&shells)?;
+        let processes = self.processes(&shells)?;
         let symmetry_planes = self.symmetry_planes(&shells)?;
         let (contact, solver) = (&spec.contact, SolverOptions::default());
         Ok(Model {
@@ -123,6 +125,7 @@ impl Builder<'_> {
             constraints,
             symmetry_planes,
             loads,
+            processes,
             gravity: Vec3::from(spec.gravity),
             gravity_scale: spec.gravity_scale.clone(),
             contact: ContactOptions {

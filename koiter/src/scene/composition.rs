@@ -4,10 +4,13 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use super::damping::DampingOptions;
 use super::material_models::MaterialModel;
+use super::membrane_models::MembraneModel;
 use super::model::{BendingModel, Shell};
 use crate::Vec3;
-use crate::energy::StretchLimit;
+use crate::energy::bending::HingeSprings;
+use crate::energy::{DiscreteStiffness, StretchLimit};
 use crate::material::{
     ByFace, Homogeneous, Layer, Layered, Material, ModuliError, NeoHookean, Orthotropic,
     OrthotropicModuli, Section, StVenantKirchhoff, TensionField,
@@ -28,6 +31,14 @@ pub struct Composition {
     pub rest: RestPrescription,
     /// A stretch of the midsurface that is never reached, whatever the law.
     pub stretch_limit: Option<StretchLimit>,
+    /// How it resists stretching.
+    pub membrane: MembraneModel,
+    /// Of a membrane of springs: the stiffnesses that are not those of the material.
+    pub springs: DiscreteStiffness,
+    /// Of bending by hinges (DS(θ), DS(tan)): their weights, and their stiffness if it is not that of the material.
+    pub hinges: HingeSprings,
+    /// How it damps motion.
+    pub damping: DampingOptions,
 }
 
 /// How stress follows from strain, with the constants that not all laws have.
@@ -169,6 +180,15 @@ pub enum CompositionError {
         /// Name of the list.
         what: &'static str,
     },
+    /// A membrane of springs.
+    #[error(
+        "membrane 'discrete-shells' resists alike in all directions, in tension and compression: a material that is \
+         {material} needs membrane 'koiter'"
+    )]
+    Springs {
+        /// The law.
+        material: &'static str,
+    },
     /// A bending model of hinges.
     #[error(
         "bending model '{model}' knows isotropic rigidities and the angles of the rest mesh, not {what}: take one that has \
@@ -216,6 +236,7 @@ impl Shell {
     pub(super) fn compose(&self) -> Result<Composed, CompositionError> {
         self.check_values()?;
         self.check_bending_model()?;
+        self.check_membrane()?;
         let layered = match &self.composition.law {
             MaterialLaw::Layered(layers) => Some(
                 Layered::new(layers, self.poissons_ratio)
@@ -321,6 +342,21 @@ impl Shell {
         };
         let model = self.bending.info().name;
         Err(CompositionError::Hinges { model, what })
+    }
+
+    /// Springs have neither axes nor a side.
+    fn check_membrane(&self) -> Result<(), CompositionError> {
+        let model = self.composition.law.model();
+        let is_one_sided = matches!(
+            model,
+            MaterialModel::Orthotropic | MaterialModel::TensionField
+        );
+        match self.composition.membrane {
+            MembraneModel::DiscreteShells if is_one_sided => Err(CompositionError::Springs {
+                material: model.info().name,
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// Frame, prescribed b̄ and the material's axis in the frame.

@@ -6,7 +6,8 @@ use nalgebra::Vector3;
 
 use super::assemble::{BuildError, Unknowns, write_points};
 use super::composition::{Composed, CompositionError};
-use super::model::{BendingModel, Model, Shell};
+use super::damping::dampers;
+use super::model::{BendingModel, MembraneModel, Model, Shell};
 use super::position_bending::PositionBending;
 use super::symmetry::held_directors;
 use super::vertex_directors::kirchhoff_bending;
@@ -16,8 +17,8 @@ use crate::energy::bending::{
     AngleProfile, DirectorShape, ExtraUnknowns, Identity, LaplacianMesh, MidEdgeBending, Sine,
     Tangent, bending_stencils,
 };
-use crate::energy::{Membrane, StrainLimit};
-use crate::integrate::{ShellPart, relax_directors};
+use crate::energy::{EdgeLengths, FaceAreas, Membrane, StrainLimit};
+use crate::integrate::{Damping, ShellPart, relax_directors};
 use crate::material::Section;
 use crate::mesh::Surface;
 use crate::rest::RestError;
@@ -27,6 +28,7 @@ pub(super) struct Elastic {
     pub(super) energies: Vec<Box<dyn Energy>>,
     /// Of every solved unknown [kg, or kg·m² for directors].
     pub(super) masses: Vec<f64>,
+    pub(super) damping: Damping,
     pub(super) parts: Vec<ShellPart>,
 }
 
@@ -40,6 +42,7 @@ impl Elastic {
         let mut elastic = Self {
             energies: Vec::new(),
             masses: vec![0.0; unknowns.layout.num_dofs()],
+            damping: Damping::default(),
             parts: Vec::new(),
         };
         let firsts = unknowns.vertices.iter().zip(&unknowns.extras);
@@ -61,6 +64,7 @@ impl Elastic {
                 })?;
         }
         elastic.masses.truncate(unknowns.layout.num_solved_dofs());
+        elastic.add_drag(model);
         Ok(elastic)
     }
 
@@ -93,6 +97,24 @@ impl Elastic {
         Ok(())
     }
 
+    /// Drag by mass, where some shell has it.
+    fn add_drag(&mut self, model: &Model) {
+        let rates = (model.shells.iter()).map(|shell| shell.composition.damping.mass);
+        if rates.clone().all(|rate| rate == 0.0) {
+            return;
+        }
+        let mut drag = vec![0.0; self.masses.len()];
+        for (part, rate) in self.parts.iter().zip(rates) {
+            for dof in part.vertex_dofs().chain(part.extra_dofs()) {
+                // Measured shapes hold their vertices: these have no place among the solved unknowns.
+                if let Some(mass) = self.masses.get(dof) {
+                    drag[dof] = rate * mass;
+                }
+            }
+        }
+        self.damping.drag = drag;
+    }
+
     fn add(
         &mut self,
         shell: &Shell,
@@ -103,16 +125,11 @@ impl Elastic {
     ) -> Result<(), RestError> {
         let masses = &mut self.masses;
         add_vertex_masses(shell, &part, masses);
-        let membrane = Membrane::new(
-            &part.mesh,
-            part.first_vertex,
-            part.frames.clone(),
-            part.section.clone(),
-        );
-        self.energies
-            .push(Box::new(Assembled::new(membrane, layout)));
+        self.energies.extend(membrane(shell, &part, layout));
         let bending = bending_energy(shell, &mut part, held, layout, q, masses)?;
+        part.bending = (shell.bending.measures_curvature()).then_some(self.energies.len());
         self.energies.extend(bending);
+        (self.damping.dampers).extend(dampers(shell, &part, layout));
         if shell.rest_curved && part.extra == ExtraUnknowns::None {
             // Without directors the forms are for display only, by bisectors at rest as deformed.
             let mut rest_q = q.to_vec();
@@ -124,6 +141,35 @@ impl Elastic {
         }
         self.parts.push(part);
         Ok(())
+    }
+}
+
+/// The membrane of a shell.
+pub(super) fn membrane(
+    shell: &Shell,
+    part: &ShellPart,
+    layout: &DofLayout,
+) -> Vec<Box<dyn Energy>> {
+    let (mesh, first, frames, section) = (
+        &part.mesh,
+        part.first_vertex,
+        &part.frames,
+        part.section.clone(),
+    );
+    match shell.composition.membrane {
+        MembraneModel::Koiter => {
+            let faces = Membrane::new(mesh, first, frames.clone(), section);
+            vec![Box::new(Assembled::new(faces, layout))]
+        }
+        MembraneModel::DiscreteShells => {
+            let given = shell.composition.springs;
+            let lengths = EdgeLengths::new(mesh, first, frames, &section, given);
+            let areas = FaceAreas::new(mesh, first, frames, &section, given);
+            vec![
+                Box::new(Assembled::new(lengths, layout)),
+                Box::new(Assembled::new(areas, layout)),
+            ]
+        }
     }
 }
 
@@ -215,6 +261,7 @@ fn shell_part(
         section,
         director_shape: director_shape(shell.bending),
         stencils: bending_stencils(&shell.surface.mesh, first_vertex, first_extra),
+        bending: None,
     })
 }
 
@@ -238,6 +285,17 @@ fn add_vertex_masses(shell: &Shell, part: &ShellPart, masses: &mut [f64]) {
     }
 }
 
+/// Bending with mid-edge directors and these rest forms.
+pub(super) fn mid_edge_bending<P: AngleProfile>(
+    part: &ShellPart,
+    rest_forms: Vec<Vector3<f64>>,
+    layout: &DofLayout,
+) -> Assembled<MidEdgeBending<P, Arc<dyn Section>>, 21, 9> {
+    let (stencils, frames) = (part.stencils.clone(), part.frames.clone());
+    let bending = MidEdgeBending::new(stencils, frames, rest_forms, part.section.clone());
+    Assembled::new(bending, layout)
+}
+
 /// Bending with mid-edge directors: finds the rest directors where the rest shape is curved, relaxes the directors of
 /// the start shape in `q`, and adds their inertia.
 fn director_bending<P: AngleProfile + 'static>(
@@ -249,18 +307,11 @@ fn director_bending<P: AngleProfile + 'static>(
     masses: &mut [f64],
 ) -> Result<Option<Box<dyn Energy>>, RestError> {
     let num_faces = part.mesh.num_faces();
-    let bending = |part: &ShellPart, forms| {
-        let (stencils, frames) = (part.stencils.clone(), part.frames.clone());
-        Assembled::new(
-            MidEdgeBending::<P, _>::new(stencils, frames, forms, part.section.clone()),
-            layout,
-        )
-    };
     let angles = part.extra_dofs();
     let flat = vec![Vector3::zeros(); num_faces];
     let mut rest_q = q.to_vec();
     write_points(&mut rest_q, part.first_vertex, &shell.rest_positions);
-    let mut at_rest = bending(part, flat);
+    let mut at_rest = mid_edge_bending::<P>(part, flat, layout);
     let held_at_rest = held(part, &rest_q);
     relax_directors(
         &mut at_rest,
@@ -275,7 +326,7 @@ fn director_bending<P: AngleProfile + 'static>(
         }
     }
     add_director_inertia(shell, part, &at_rest, &rest_q, masses);
-    let mut energy = bending(part, part.rest_forms.clone());
+    let mut energy = mid_edge_bending::<P>(part, part.rest_forms.clone(), layout);
     // From the rest directors: where the start shape is the rest shape this is the exact minimum, round-off included.
     q[angles.clone()].copy_from_slice(&rest_q[angles.clone()]);
     let starts_at_rest =

@@ -33,6 +33,7 @@ mod vertex_directors;
 #[cfg(feature = "serde")]
 mod build;
 #[cfg(feature = "serde")]
+mod damping;
 mod decode;
 #[cfg(feature = "serde")]
 mod document;
@@ -41,6 +42,7 @@ mod error;
 #[cfg(feature = "serde")]
 mod face_file;
 #[cfg(feature = "serde")]
+mod membrane_models;
 mod memory;
 #[cfg(feature = "serde")]
 mod nearest;
@@ -48,6 +50,7 @@ mod nearest;
 mod placement;
 #[cfg(feature = "serde")]
 mod probe;
+mod processes;
 #[cfg(feature = "serde")]
 mod schema;
 #[cfg(feature = "serde")]

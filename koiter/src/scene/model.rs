@@ -4,8 +4,12 @@ use crate::Vec3;
 use crate::mesh::{EdgeId, FaceId, VertexId};
 
 pub use super::composition::{Composition, FaceValues, MaterialLaw, RestPrescription};
+pub use super::damping::DampingOptions;
 pub use super::material_models::MaterialModel;
-pub use crate::energy::StretchLimit;
+pub use super::membrane_models::MembraneModel;
+pub use super::processes::{ProcessKind, RestProcess};
+pub use crate::energy::bending::{HingeSprings, HingeWeight};
+pub use crate::energy::{DiscreteStiffness, StretchLimit};
 pub use crate::material::Layer;
 pub use crate::mesh::Surface;
 
@@ -344,13 +348,16 @@ impl Default for SolverOptions {
     }
 }
 
-/// The two numbers of Newmark's method.
+/// The numbers of Newmark's method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewmarkOptions {
     /// β: 0 for explicit steps, else from γ/2 on, where every step is stable.
     pub beta: f64,
     /// γ, from 1/2 to 1: more than 1/2 damps, in first order.
     pub gamma: f64,
+    /// A step that gains more energy than this share of the largest kinetic energy so far is taken in parts; `None`: gains
+    /// are not watched.
+    pub energy_growth: Option<f64>,
 }
 
 impl Default for NewmarkOptions {
@@ -358,6 +365,7 @@ impl Default for NewmarkOptions {
         Self {
             beta: 0.25,
             gamma: 0.5,
+            energy_growth: None,
         }
     }
 }
@@ -435,6 +443,8 @@ pub struct Model {
     pub symmetry_planes: Vec<SymmetryPlane>,
     /// Loads.
     pub loads: Vec<Load>,
+    /// What changes rest curvatures over time.
+    pub processes: Vec<RestProcess>,
     /// Gravitational acceleration [m/s²].
     pub gravity: Vec3,
     /// Factor on gravity over time (`None`: 1).

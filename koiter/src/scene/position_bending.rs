@@ -5,8 +5,9 @@ use super::elastic::rest_surface;
 use super::model::Shell;
 use crate::assembly::{Assembled, DofLayout, Energy};
 use crate::energy::bending::{
-    AngleProfile, CorotationalEdge, CorotationalFace, DiscreteShells, FaceBending, LaplacianMesh,
-    MidEdgeAverage, QuadraticHinge, QuadraticVertex, SecondOrderEdges, SecondOrderFaces,
+    AngleProfile, CorotationalEdge, CorotationalFace, DiscreteShells, FaceBending, HingeSprings,
+    LaplacianMesh, MidEdgeAverage, QuadraticHinge, QuadraticVertex, SecondOrderEdges,
+    SecondOrderFaces,
 };
 use crate::integrate::ShellPart;
 use crate::mesh::Surface;
@@ -18,6 +19,7 @@ pub(super) struct PositionBending<'a> {
     rest: Surface,
     /// Whether the rest shape is curved.
     curved: bool,
+    hinges: HingeSprings,
     /// C of every face [N·m].
     rigidity: Vec<f64>,
 }
@@ -30,6 +32,7 @@ impl<'a> PositionBending<'a> {
             layout,
             rest: rest_surface(shell),
             curved: shell.rest_curved,
+            hinges: shell.composition.hinges,
             rigidity: (0..num_faces)
                 .map(|face| part.section.flexural_rigidity(face))
                 .collect(),
@@ -38,8 +41,15 @@ impl<'a> PositionBending<'a> {
 
     pub(super) fn discrete_shells<P: AngleProfile + 'static>(&self) -> Box<dyn Energy> {
         let (first, frames) = (self.part.first_vertex, &self.part.frames);
-        let hinges =
-            DiscreteShells::<P>::new(&self.rest, first, frames, self.curved, &self.rigidity);
+        let (curved, rigidity) = (self.curved, &self.rigidity);
+        let hinges = DiscreteShells::<P>::with_springs(
+            &self.rest,
+            first,
+            frames,
+            curved,
+            rigidity,
+            self.hinges,
+        );
         Box::new(Assembled::new(hinges, self.layout))
     }
 

@@ -7,6 +7,7 @@ use super::holds::Holds;
 use super::loads::set_factors;
 use super::model::{BendingModel, IntegratorKind, Model, Phase, Shell};
 use super::phases::phase_of_step;
+use super::processes::Processes;
 use super::symmetry::held_by;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, Energy};
@@ -28,6 +29,7 @@ pub struct Simulation {
     phase: usize,
     obstacles: Vec<(Dof, Vec<Vec3>)>,
     pub(super) holds: Holds,
+    pub(super) processes: Processes,
     parts: Vec<PartTopology>,
     /// The share of a step that is tried first.
     pub(super) share: f64,
@@ -82,12 +84,14 @@ impl Simulation {
     /// A rest state that cannot be used; a start that touches or intersects.
     pub fn new(model: Model) -> Result<Self, BuildError> {
         let Assembly {
-            system,
+            mut system,
             q,
             velocities,
             obstacles,
             clamps,
         } = assemble(&model)?;
+        let processes = Processes::new(&model, &mut system, &q)
+            .map_err(|(process, error)| BuildError::Process { process, error })?;
         let phases = model.all_phases();
         let integrators = (phases.iter())
             .map(|phase| integrator(&model, phase.integrator))
@@ -111,6 +115,7 @@ impl Simulation {
             phase: 0,
             obstacles,
             holds,
+            processes,
             parts,
             share: 1.0,
             load_pattern,
@@ -159,23 +164,26 @@ impl Simulation {
 
     /// One step of the integrator, to the time `time` [s], `dt` [s] from now.
     pub(super) fn step_to(&mut self, time: f64, dt: f64) -> Result<StepReport, StepError> {
-        self.begin_step()?;
+        self.begin_step(dt)?;
         let parts = &self.system.space.shells;
         let window = [self.state.time, time];
         let phase = &self.phases[self.phase];
         (self.holds).switch(&self.model, phase, parts, &self.state.q, window);
         self.apply_schedules(time);
+        let rests = self.processes.rests();
+        (self.processes).advance(&mut self.system, &self.state.q, window, dt);
         let prescribed = self.prescribed_at(time);
         let integrator = &mut self.integrators[self.phase];
         let result = integrator.step(&mut self.system, &mut self.state, &prescribed, dt);
         if result.is_err() {
+            self.processes.restore(&mut self.system, &rests);
             self.apply_schedules(self.state.time);
         }
         result
     }
 
     /// Lets the integrator look at the start of a step before schedules move on.
-    fn begin_step(&mut self) -> Result<(), StepError> {
+    fn begin_step(&mut self, dt: f64) -> Result<(), StepError> {
         let knows = matches!(self.state.memory, Memory::Accelerated { .. });
         if knows || self.phase().integrator != IntegratorKind::Newmark {
             return Ok(());
@@ -183,7 +191,7 @@ impl Simulation {
         self.apply_schedules(self.state.time);
         let is_fixed = self.prescribed_at(self.state.time).is_fixed;
         let integrator = &mut self.integrators[self.phase];
-        integrator.begin(&mut self.system, &mut self.state, &is_fixed)
+        integrator.begin(&mut self.system, &mut self.state, &is_fixed, dt)
     }
 
     /// Gravity, loads and clamps as they are at a time [s].
@@ -282,13 +290,14 @@ impl Simulation {
 
     /// Total force that a constraint exerts on its vertices [N], friction of contact left out.
     ///
-    /// The force that balances elasticity, gravity, loads, contact and inertia of the last step at the held coordinates; where
+    /// The force that balances elasticity, damping, gravity, loads, contact and inertia of the last step at the held coordinates; where
     /// two constraints hold the same coordinate both are told its force.
     pub fn reaction(&self, constraint: usize) -> Vec3 {
         let mut gradient = vec![0.0; self.system.layout.num_dofs()];
         for energy in &self.system.elastic {
             energy.add_gradient(&self.state.q, &mut gradient);
         }
+        (self.system.damping).add_gradient(&self.state.q, &mut gradient);
         self.system
             .gravity
             .add_gradient(&self.state.q, &mut gradient);
@@ -354,7 +363,7 @@ impl Simulation {
     }
 
     /// Values on the faces of all parts; zero on obstacles: largest principal Green strain, bending energy density
-    /// [J/m²], mean curvature [1/m].
+    /// [J/m²], mean curvature [1/m], mean curvature at rest [1/m].
     pub fn face_fields(&self) -> Vec<(&'static str, Vec<f32>)> {
         let shells = &self.system.space.shells;
         let on_obstacles: usize = self.parts[shells.len()..]
@@ -381,6 +390,10 @@ impl Simulation {
             (
                 "mean_curvature",
                 gather(&|s, f| shells[s].mean_curvature(f, q)),
+            ),
+            (
+                "rest_curvature",
+                gather(&|s, f| 0.5 * (shells[s].rest_forms[f].x + shells[s].rest_forms[f].y)),
             ),
         ]
     }
@@ -424,6 +437,7 @@ fn integrator(model: &Model, kind: IntegratorKind) -> Result<Box<dyn Integrator>
         IntegratorKind::Newmark => Box::new(Newmark {
             beta: solver.newmark.beta,
             gamma: solver.newmark.gamma,
+            energy_growth: solver.newmark.energy_growth,
             velocity_tolerance,
         }),
         IntegratorKind::QuasiStatic => Box::new(QuasiStatic {

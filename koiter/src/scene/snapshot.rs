@@ -4,6 +4,7 @@ use super::holds::Anchor;
 use super::simulation::Simulation;
 use crate::assembly::Energy;
 use crate::integrate::{Memory, PathPoint, State};
+use crate::process::RestState;
 use crate::solve::{LinearWorkspace, WorkspaceHistory};
 
 /// Everything of a simulation that its model does not say: a new simulation of the same model, restored from it, takes
@@ -20,6 +21,10 @@ pub struct Snapshot {
     pub share: f64,
     /// Where constraints that began during the run and still act took over.
     pub anchors: Vec<Anchor>,
+    /// The rest states that processes have changed, of the shells on which they act.
+    pub rests: Vec<RestState>,
+    /// Angles of hinges [rad], which may lie beyond half a turn: of each bending energy and each damper that follows them.
+    pub angles: Vec<Vec<f64>>,
     /// What the linear solver keeps between steps.
     pub solver: WorkspaceHistory,
 }
@@ -41,6 +46,8 @@ impl Simulation {
             turned: self.system.loads.turned(),
             share: self.share,
             anchors: self.holds.anchors().to_vec(),
+            rests: self.processes.rests(),
+            angles: self.system.branches(&self.state.q),
             solver: self.system.workspace.history(),
         }
     }
@@ -55,6 +62,8 @@ impl Simulation {
         self.system.workspace =
             LinearWorkspace::with_history(&snapshot.solver, &self.system.layout).map_err(refuse)?;
         self.state = snapshot.state.clone();
+        self.processes.restore(&mut self.system, &snapshot.rests);
+        self.system.restore_branches(&snapshot.angles);
         (self.system.loads).restore_turned(&snapshot.turned, &self.state.q);
         self.enter_phase(self.state.step.max(1));
         self.share = snapshot.share;
@@ -95,6 +104,7 @@ impl Simulation {
         if !(snapshot.share > 0.0 && snapshot.share <= 1.0) {
             return Err(format!("its share of a step is {}", snapshot.share));
         }
+        self.check_rests(snapshot)?;
         self.check_path(state.path.as_ref())?;
         self.check_memory(&state.memory)?;
         (snapshot.anchors.iter()).try_for_each(|anchor| self.check_anchor(anchor))?;
@@ -102,6 +112,36 @@ impl Simulation {
             (None, None) => Ok(()),
             (Some(_), Some(kappa)) if kappa.is_finite() && kappa > 0.0 => Ok(()),
             (_, kappa) => Err(format!("its barrier stiffness is {kappa:?}")),
+        }
+    }
+
+    /// Rest states and angles are as many as those of this simulation.
+    fn check_rests(&self, snapshot: &Snapshot) -> Result<(), String> {
+        let sizes = |rests: &[RestState]| -> Vec<usize> {
+            rests.iter().map(|rest| rest.curvature.len()).collect()
+        };
+        let lengths = |lists: &[Vec<f64>]| -> Vec<usize> { lists.iter().map(Vec::len).collect() };
+        let own = self.processes.rests();
+        // Flow begins with the first step, and belongs to numbers or to forms of three.
+        let flows = snapshot.rests.iter().all(|saved| {
+            let (flows, values) = (saved.flow.len(), saved.curvature.len());
+            flows == 0 || flows == values || 3 * flows == values
+        });
+        let values = snapshot.rests.iter();
+        let mut values = values
+            .flat_map(|rest| rest.curvature.iter().chain(&rest.flow))
+            .chain(snapshot.angles.iter().flatten());
+        match () {
+            () if sizes(&snapshot.rests) != sizes(&own) || !flows => {
+                Err("its rest states are of other shells".into())
+            }
+            () if lengths(&snapshot.angles) != lengths(&self.system.branches(&self.state.q)) => {
+                Err("its angles are of other hinges".into())
+            }
+            () if values.any(|value| !value.is_finite()) => {
+                Err("one of its rest states is not finite".into())
+            }
+            () => Ok(()),
         }
     }
 
@@ -136,7 +176,11 @@ impl Simulation {
             Memory::Before { dt, q, velocities } => {
                 sound(*dt) && dt.is_finite() && fits(q) && fits(velocities)
             }
-            Memory::Accelerated { stable_dt, .. } => sound(*stable_dt),
+            Memory::Accelerated {
+                stable_dt,
+                largest_kinetic,
+                ..
+            } => sound(*stable_dt) && largest_kinetic.is_finite(),
         };
         match is_whole {
             true => Ok(()),

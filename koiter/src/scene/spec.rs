@@ -21,11 +21,14 @@
 mod check;
 mod constraint;
 mod contact;
+mod damping;
+mod discrete_shells;
 mod load;
 mod material;
 mod newmark;
 mod obstacle;
 mod phase;
+mod process;
 mod shape;
 mod strain_limit;
 mod symmetry;
@@ -33,11 +36,14 @@ mod symmetry;
 pub use check::MAX_STEPS;
 pub use constraint::{BoundsSpec, ConstraintSpec, SelectSpec};
 pub use contact::{ContactSpec, PairSpec};
+pub use damping::DampingSpec;
+pub use discrete_shells::DiscreteShellsSpec;
 pub use load::{EdgeChoice, LoadSpec};
 pub use material::{LayerSpec, MaterialSpec};
 pub use newmark::NewmarkSpec;
 pub use obstacle::{DeformSpec, ObstacleSpec};
 pub use phase::PhaseSpec;
+pub use process::{CreaseSpec, CurlSpec, ProcessSpec, YieldSpec};
 pub use shape::{
     BoxSpec, CapsuleSpec, CylinderBodySpec, MeshSpec, PlaneSpec, RotationSpec, SphereSpec, Units,
     UpAxis,
@@ -56,6 +62,7 @@ use serde::{Deserialize, Serialize};
 use super::decode::decode;
 use super::document::Document;
 use super::error::SceneError;
+use super::membrane_models::MembraneModel;
 use super::model::{BendingModel, IntegratorKind};
 use super::schedule::Schedule;
 
@@ -99,6 +106,9 @@ pub struct SceneSpec {
     /// Loads.
     #[serde(default)]
     pub load: Vec<LoadSpec>,
+    /// What changes rest shapes over time.
+    #[serde(default)]
+    pub process: Vec<ProcessSpec>,
     /// Contact.
     #[serde(default)]
     pub contact: ContactSpec,
@@ -145,6 +155,16 @@ pub struct ShellSpec {
     /// Bending model.
     #[serde(default)]
     pub bending: BendingModel,
+    /// Membrane.
+    #[serde(default)]
+    pub membrane: MembraneModel,
+    /// Stiffnesses and weights of Discrete Shells, for `membrane = "discrete-shells"` and for hinges; default: those of the
+    /// material.
+    #[serde(default)]
+    pub discrete_shells: Option<DiscreteShellsSpec>,
+    /// Damping in dynamics; default: none.
+    #[serde(default)]
+    pub damping: Option<DampingSpec>,
     /// Rest curvature.
     #[serde(default)]
     pub rest: RestSpec,
@@ -299,8 +319,8 @@ pub struct OutputSpec {
     /// A frame every so many seconds of simulated time.
     #[serde(default)]
     pub every_seconds: Option<f64>,
-    /// Face fields written with each frame.
-    #[serde(default = "all_fields")]
+    /// Face fields written with each frame; default: all but rest_curvature, which only processes change.
+    #[serde(default = "usual_fields")]
     #[schemars(schema_with = "super::schema::field_names")]
     pub fields: Vec<String>,
     /// A checkpoint after a step once so many seconds have gone by since the last; 0: after every step.
@@ -320,7 +340,7 @@ impl Default for OutputSpec {
         Self {
             every_steps: None,
             every_seconds: None,
-            fields: all_fields(),
+            fields: usual_fields(),
             checkpoint_seconds: checkpoint_seconds(),
             camera: None,
             color: None,
@@ -341,7 +361,15 @@ pub const ENERGY_NAMES: [&str; 8] = [
 ];
 
 /// Names of the face fields a run can write.
-pub const FIELD_NAMES: [&str; 3] = ["strain", "bending_energy_density", "mean_curvature"];
+pub const FIELD_NAMES: [&str; 4] = [
+    "strain",
+    "bending_energy_density",
+    "mean_curvature",
+    "rest_curvature",
+];
+
+/// Fields of shells that are not written unless they are named: they do not change without processes.
+const FIELDS_ON_DEMAND: usize = 1;
 
 /// A kill loses at most so much work and a step; writing takes a hundredth of it at a million unknowns.
 fn checkpoint_seconds() -> f64 {
@@ -358,8 +386,9 @@ pub const KEYS_OF_NO_STEP: [&str; 6] = [
     "output.checkpoint_seconds",
 ];
 
-fn all_fields() -> Vec<String> {
-    FIELD_NAMES.map(ToOwned::to_owned).to_vec()
+fn usual_fields() -> Vec<String> {
+    let usual = &FIELD_NAMES[..FIELD_NAMES.len() - FIELDS_ON_DEMAND];
+    usual.iter().map(|name| (*name).to_owned()).collect()
 }
 
 /// A scene with the text it was read from.

@@ -8,6 +8,7 @@
 use super::holds::Holds;
 use super::simulation::Simulation;
 use crate::integrate::{State, StepError, StepReport};
+use crate::process::RestState;
 
 /// A part that took at most this share of the iterations that are allowed is followed by one twice as long …
 const QUICK: f64 = 0.125;
@@ -20,6 +21,7 @@ struct Before {
     state: State,
     turned: Vec<f64>,
     holds: Holds,
+    rests: Vec<RestState>,
     kappa: Option<f64>,
 }
 
@@ -86,6 +88,7 @@ impl Simulation {
             state: self.state.clone(),
             turned: self.system.loads.turned(),
             holds: self.holds.clone(),
+            rests: self.processes.rests(),
             kappa: self.system.contact.as_ref().map(|contact| contact.kappa()),
         }
     }
@@ -94,6 +97,8 @@ impl Simulation {
         self.state = before.state.clone();
         (self.system.loads).restore_turned(&before.turned, &self.state.q);
         self.holds = before.holds.clone();
+        self.processes.restore(&mut self.system, &before.rests);
+        self.system.follow(&self.state.q);
         self.apply_schedules(self.state.time);
         if let (Some(contact), Some(kappa)) = (&mut self.system.contact, before.kappa) {
             contact.set_kappa(kappa);

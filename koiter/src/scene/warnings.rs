@@ -3,7 +3,7 @@
 use super::elastic::rest_surface;
 use super::error::Warning;
 use super::free_parts::FreePart;
-use super::model::{BendingModel, Model, Motion, ObstacleShape, Shell};
+use super::model::{BendingModel, MembraneModel, Model, Motion, ObstacleShape, Shell};
 use super::spec::{MeshSpec, SceneSpec, Units};
 
 /// Softer than any gel, harder than diamond.
@@ -45,6 +45,7 @@ pub(super) fn find(model: &Model, spec: &SceneSpec) -> Vec<Warning> {
         warnings.extend(check_size(shell, &path, &typed.mesh));
         warnings.extend(check_thickness(shell, &path));
         warnings.extend(check_bending(shell, &path));
+        warnings.extend(check_springs(shell, &path));
     }
     for (obstacle, typed) in model.obstacles.iter().zip(&spec.obstacle) {
         let path = format!("obstacle.{}", typed.name);
@@ -159,6 +160,21 @@ fn check_bending(shell: &Shell, path: &str) -> Option<Warning> {
     let (caveat, help) = bending_caveat(shell)?;
     let message = format!("shell '{}': {caveat}", shell.name);
     Some(warning(message, format!("{path}.bending"), help))
+}
+
+/// Springs on edges alone have a Poisson's ratio of 1/3; those on areas can only raise it.
+fn check_springs(shell: &Shell, path: &str) -> Option<Warning> {
+    let is_of_material = shell.composition.springs.areas.is_none();
+    let is_discrete = shell.composition.membrane == MembraneModel::DiscreteShells;
+    if !(is_discrete && is_of_material && shell.poissons_ratio < 1.0 / 3.0) {
+        return None;
+    }
+    let message = format!(
+        "shell '{}': membrane 'discrete-shells' acts as with a Poisson's ratio of 1/3, not {}",
+        shell.name, shell.poissons_ratio
+    );
+    let help = "shear is as stiff as the material's; membrane = \"koiter\" has any ratio";
+    Some(warning(message, format!("{path}.membrane"), help))
 }
 
 /// What the bending model of a shell does not do, in words, and what helps.

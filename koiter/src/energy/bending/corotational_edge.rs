@@ -128,6 +128,7 @@ fn curvature(hinge: &Hinge, deformed: &DeformedHinge) -> HingeFunction {
 
 impl LocalEnergy<12, 4> for CorotationalEdge {
     const NODE_SIZES: [usize; 4] = [3; 4];
+    const MEASURES: usize = 1;
 
     fn name(&self) -> &'static str {
         "bending"
@@ -162,6 +163,18 @@ impl LocalEnergy<12, 4> for CorotationalEdge {
         kept: f64,
     ) -> LocalHessian<12> {
         self.derivatives(stencil, q, kept)
+    }
+
+    fn measure(&self, stencil: usize, q: &SVector<f64, 12>, measures: &mut [f64]) {
+        measures[0] = self.at(stencil, q).1.value;
+    }
+
+    fn rest(&self, stencil: usize, measures: &mut [f64]) {
+        measures[0] = self.rest[stencil];
+    }
+
+    fn set_rest(&mut self, stencil: usize, measures: &[f64]) {
+        self.rest[stencil] = measures[0];
     }
 
     fn describe(&self, stencil: usize) -> String {

@@ -146,4 +146,16 @@ impl FaceLaw for CorotationalFace {
             tangent,
         }
     }
+
+    fn measure(&self, _face: usize, curvatures: &Vector3<f64>) -> Vector3<f64> {
+        *curvatures
+    }
+
+    fn rest(&self, face: usize) -> Vector3<f64> {
+        self.faces[face].rest
+    }
+
+    fn set_rest(&mut self, face: usize, rest: Vector3<f64>) {
+        self.faces[face].rest = rest;
+    }
 }

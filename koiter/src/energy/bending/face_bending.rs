@@ -30,6 +30,12 @@ pub trait FaceLaw: Send + Sync {
     fn curvature(&self, face: usize, corner: usize, hinge: &DeformedHinge) -> HingeFunction;
     /// W.
     fn response(&self, face: usize, curvatures: &Vector3<f64>) -> FaceResponse;
+    /// What of the q_c is compared with rest values.
+    fn measure(&self, face: usize, curvatures: &Vector3<f64>) -> Vector3<f64>;
+    /// These rest values.
+    fn rest(&self, face: usize) -> Vector3<f64>;
+    /// Replaces them.
+    fn set_rest(&mut self, face: usize, rest: Vector3<f64>);
 }
 
 /// Bending energy of one shell with the law `L`.
@@ -104,6 +110,7 @@ fn values(corners: &[Corner; 3]) -> Vector3<f64> {
 
 impl<L: FaceLaw> LocalEnergy<18, 6> for FaceBending<L> {
     const NODE_SIZES: [usize; 6] = [3; 6];
+    const MEASURES: usize = 3;
 
     fn name(&self) -> &'static str {
         "bending"
@@ -144,6 +151,20 @@ impl<L: FaceLaw> LocalEnergy<18, 6> for FaceBending<L> {
 
     fn projected_hessian(&self, face: usize, q: &SVector<f64, 18>, kept: f64) -> LocalHessian<18> {
         self.derivatives(face, q, kept)
+    }
+
+    fn measure(&self, face: usize, q: &SVector<f64, 18>, measures: &mut [f64]) {
+        let measured = self.law.measure(face, &self.curvatures(face, q));
+        measures.copy_from_slice(measured.as_slice());
+    }
+
+    fn rest(&self, face: usize, measures: &mut [f64]) {
+        measures.copy_from_slice(self.law.rest(face).as_slice());
+    }
+
+    fn set_rest(&mut self, face: usize, measures: &[f64]) {
+        self.law
+            .set_rest(face, Vector3::from_column_slice(measures));
     }
 
     fn describe(&self, face: usize) -> String {

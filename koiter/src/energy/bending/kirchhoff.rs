@@ -401,6 +401,7 @@ pub(super) fn tangent_plane(unit: &Vec3) -> Matrix3x2<f64> {
 
 impl<S: Section> LocalEnergy<18, 6> for DiscreteKirchhoff<S> {
     const NODE_SIZES: [usize; 6] = [3; 6];
+    const MEASURES: usize = 9;
 
     fn name(&self) -> &'static str {
         "bending"
@@ -441,6 +442,27 @@ impl<S: Section> LocalEnergy<18, 6> for DiscreteKirchhoff<S> {
 
     fn is_admissible(&self, _stencil: usize, q: &SVector<f64, 18>) -> bool {
         (3..6).all(|i| q.fixed_rows::<3>(3 * i).norm() > SHORTEST_DIRECTOR)
+    }
+
+    fn measure(&self, stencil: usize, q: &SVector<f64, 18>, measures: &mut [f64]) {
+        for (part, form) in measures
+            .chunks_exact_mut(3)
+            .zip(self.second_forms(stencil, q))
+        {
+            part.copy_from_slice(form.as_slice());
+        }
+    }
+
+    fn rest(&self, stencil: usize, measures: &mut [f64]) {
+        for (part, form) in measures.chunks_exact_mut(3).zip(&self.rest_forms[stencil]) {
+            part.copy_from_slice(form.as_slice());
+        }
+    }
+
+    fn set_rest(&mut self, stencil: usize, measures: &[f64]) {
+        let forms =
+            std::array::from_fn(|n| Vector3::from_column_slice(&measures[3 * n..3 * n + 3]));
+        self.rest_forms[stencil] = forms;
     }
 
     fn describe(&self, stencil: usize) -> String {

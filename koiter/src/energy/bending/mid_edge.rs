@@ -310,6 +310,7 @@ fn corner_form(corner: &Corner, moment: f64, kept: f64) -> (Functional, Quadrati
 
 impl<P: AngleProfile, S: Section> LocalEnergy<21, 9> for MidEdgeBending<P, S> {
     const NODE_SIZES: [usize; 9] = [3, 3, 3, 3, 3, 3, 1, 1, 1];
+    const MEASURES: usize = 3;
 
     fn name(&self) -> &'static str {
         "bending"
@@ -379,6 +380,18 @@ impl<P: AngleProfile, S: Section> LocalEnergy<21, 9> for MidEdgeBending<P, S> {
                 .tilts(stencil, q)
                 .iter()
                 .all(|tilt| tilt.abs() < P::MAX_TILT)
+    }
+
+    fn measure(&self, stencil: usize, q: &SVector<f64, 21>, measures: &mut [f64]) {
+        measures.copy_from_slice(self.second_form(stencil, q).as_slice());
+    }
+
+    fn rest(&self, stencil: usize, measures: &mut [f64]) {
+        measures.copy_from_slice(self.rest_forms[stencil].as_slice());
+    }
+
+    fn set_rest(&mut self, stencil: usize, measures: &[f64]) {
+        self.rest_forms[stencil] = Vector3::from_column_slice(measures);
     }
 
     fn describe(&self, stencil: usize) -> String {

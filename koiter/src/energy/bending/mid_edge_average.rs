@@ -136,4 +136,16 @@ impl<S: Section> FaceLaw for MidEdgeAverage<S> {
             tangent: form.transpose() * response.tangent * form,
         }
     }
+
+    fn measure(&self, face: usize, curvatures: &Vector3<f64>) -> Vector3<f64> {
+        self.form_matrix(face) * curvatures
+    }
+
+    fn rest(&self, face: usize) -> Vector3<f64> {
+        self.rest_forms[face]
+    }
+
+    fn set_rest(&mut self, face: usize, rest: Vector3<f64>) {
+        self.rest_forms[face] = rest;
+    }
 }

@@ -9,7 +9,10 @@
 //! list of f64: what the directors under moments have turned  f64 share of a step
 //! u8 0 nothing, 1 the state before the last step (BDF2): f64 its length  list of f64: q, its rates
 //!    2 accelerations of the equation of motion (Newmark): f64 longest stable step  u64 steps since it was estimated
+//!      f64 largest kinetic energy
 //! list of anchors: list of u64 constraints, f64 time, list of f64: q when they began
+//! list of rest states: list of f64 rest curvatures, list of f64 flows
+//! list of lists of f64: angles of hinges
 //! list of u32 × 2: couplings by contacts  list of u32: elimination order  u64 factor entries when it was made
 //! u64 × 4 Newton iterations, steps not converged, steps in parts, intersections  f64 × 2 smallest gap, seconds
 //! list of parts of the run: text name, f64 seconds  list of f64: last values of the probes
@@ -26,11 +29,12 @@ use super::topology_file::checked_body;
 use crate::integrate::{Memory, PathPoint, State};
 use crate::io::bytes::{ByteReader, Endian};
 use crate::io::checksum::crc32;
+use crate::process::RestState;
 use crate::scene::{Anchor, Snapshot};
 use crate::solve::WorkspaceHistory;
 
 const MAGIC: &[u8; 8] = b"KOITERCP";
-const FORMAT: u32 = 5;
+const FORMAT: u32 = 6;
 
 /// All that is needed to go on with a run to the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,6 +158,11 @@ impl Checkpoint {
             out.f64(anchor.time);
             out.numbers(&anchor.q);
         });
+        out.list(&snapshot.rests, |out, rest| {
+            out.numbers(&rest.curvature);
+            out.numbers(&rest.flow);
+        });
+        out.list(&snapshot.angles, |out, angles| out.numbers(angles));
         let WorkspaceHistory {
             changing_pairs,
             node_order,
@@ -220,10 +229,15 @@ impl Bytes {
                 self.numbers(q);
                 self.numbers(velocities);
             }
-            Memory::Accelerated { stable_dt, age } => {
+            Memory::Accelerated {
+                stable_dt,
+                age,
+                largest_kinetic,
+            } => {
                 self.0.push(2);
                 self.f64(*stable_dt);
                 self.u64(*age);
+                self.f64(*largest_kinetic);
             }
         }
     }
@@ -258,6 +272,13 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
     let share = reader.f64()?;
     state.memory = memory(reader)?;
     let anchors = list(reader, 24, anchor)?;
+    let rests = list(reader, 16, |reader| {
+        Some(RestState {
+            curvature: numbers(reader)?,
+            flow: numbers(reader)?,
+        })
+    })?;
+    let angles = list(reader, 8, numbers)?;
     let solver = WorkspaceHistory {
         changing_pairs: list(reader, 8, |reader| Some([reader.u32()?, reader.u32()?]))?,
         node_order: list(reader, 4, ByteReader::u32)?,
@@ -279,6 +300,8 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
         turned,
         share,
         anchors,
+        rests,
+        angles,
         solver,
     };
     Some(Checkpoint {
@@ -323,6 +346,7 @@ fn memory(reader: &mut ByteReader) -> Option<Memory> {
         2 => Some(Memory::Accelerated {
             stable_dt: reader.f64()?,
             age: reader.u64()?,
+            largest_kinetic: reader.f64()?,
         }),
         _ => None,
     }

@@ -84,6 +84,16 @@ pub(super) fn compose(
         },
         stretch_limit: (shell.strain_limit.as_ref())
             .map(|limit| limit.resolve(nominal.youngs_modulus)),
+        membrane: shell.membrane,
+        damping: (shell.damping.as_ref())
+            .map(|damping| damping.resolve())
+            .unwrap_or_default(),
+        springs: (shell.discrete_shells.as_ref())
+            .map(|numbers| numbers.membrane())
+            .unwrap_or_default(),
+        hinges: (shell.discrete_shells.as_ref())
+            .map(|numbers| numbers.hinges())
+            .unwrap_or_default(),
     };
     Ok((nominal, composition))
 }
@@ -103,6 +113,7 @@ pub(super) fn check(shell: &Shell) -> Result<(), SceneError> {
         CompositionError::Axis { .. } => (Kind::OutOfRange, "material.axis"),
         CompositionError::Rest(_) => (Kind::Mesh, "rest_mesh"),
         CompositionError::Hinges { .. } => (Kind::Conflict, "bending"),
+        CompositionError::Springs { .. } => (Kind::Conflict, "membrane"),
     };
     let path = format!("shell.{}.{key}", shell.name);
     let placed = SceneError::new(kind, error.to_string()).inside(&path);

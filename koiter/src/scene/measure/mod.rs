@@ -191,6 +191,7 @@ impl Measurement<'_> {
             gravity: Vec3::zeros(),
             gravity_scale: None,
             loads: Vec::new(),
+            processes: Vec::new(),
             symmetry_planes: Vec::new(),
             contact: ContactOptions {
                 enabled: false,

@@ -35,6 +35,10 @@ name = "lift"
 shell = "sheet"
 select.all = true
 force = [0.0, 0.0, 1.0]
+[[process]]
+name = "fold"
+shell = "sheet"
+crease = { line = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], degrees = 30.0 }
 [[probe]]
 name = "lowest"
 quantity = "lowest"

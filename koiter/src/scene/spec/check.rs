@@ -9,11 +9,15 @@ mod phases;
 use std::collections::HashSet;
 
 use self::friction::check_friction;
-use self::motion::{check_motion, check_schedule};
+use self::motion::check_motion;
+pub(super) use self::motion::check_schedule;
 use self::obstacle::check_obstacle;
 pub use self::phases::MAX_STEPS;
+use super::damping::check_damping;
+use super::discrete_shells::check_discrete_shells;
 use super::material::check_material;
 use super::newmark::check_newmark;
+use super::process::check_process;
 use super::strain_limit::check_strain_limit;
 use super::{
     ConstraintSpec, ENERGY_NAMES, FIELD_NAMES, MeshSpec, ProbeQuantity, ProbeSpec, RotationSpec,
@@ -77,6 +81,13 @@ pub(super) fn check(spec: &SceneSpec) -> Checked {
     for load in &spec.load {
         loads::check_load(load, spec)?;
     }
+    unique(
+        "process",
+        (spec.process.iter()).map(|process| Some(process.name.as_str())),
+    )?;
+    for process in &spec.process {
+        check_process(process, spec)?;
+    }
     for probe in &spec.probe {
         check_probe(&format!("probe.{}", probe.name), probe, spec)?;
     }
@@ -107,6 +118,8 @@ fn check_shell(path: &str, shell: &ShellSpec) -> Checked {
     if let Some(limit) = &shell.strain_limit {
         check_strain_limit(&at("strain_limit"), limit)?;
     }
+    check_discrete_shells(path, shell)?;
+    check_damping(path, shell)?;
     not_negative(&at("friction"), shell.friction, "")?;
     not_negative(&at("contact_thickness"), shell.contact_thickness, "m")
 }
@@ -134,7 +147,7 @@ fn check_rotation(path: &str, rotation: &RotationSpec) -> Checked {
     check_direction(&format!("{path}.axis"), rotation.axis)
 }
 
-fn check_direction(path: &str, direction: [f64; 3]) -> Checked {
+pub(super) fn check_direction(path: &str, direction: [f64; 3]) -> Checked {
     if direction == [0.0; 3] {
         return Err(error(
             Kind::OutOfRange,
@@ -188,7 +201,7 @@ fn check_symmetry(path: &str, plane: &SymmetrySpec, spec: &SceneSpec) -> Checked
     }
 }
 
-fn check_shell_name(path: &str, name: &str, spec: &SceneSpec) -> Checked {
+pub(super) fn check_shell_name(path: &str, name: &str, spec: &SceneSpec) -> Checked {
     if spec.shell.iter().any(|shell| shell.name == name) {
         return Ok(());
     }
@@ -428,7 +441,7 @@ pub(super) fn optional_positive(path: &str, value: Option<f64>, unit: &str) -> C
     value.map_or(Ok(()), |value| positive(path, value, unit))
 }
 
-fn not_negative(path: &str, value: f64, unit: &str) -> Checked {
+pub(super) fn not_negative(path: &str, value: f64, unit: &str) -> Checked {
     if value.is_finite() && value >= 0.0 {
         return Ok(());
     }

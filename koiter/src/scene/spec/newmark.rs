@@ -4,11 +4,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::SceneSpec;
-use super::check::{Checked, error};
+use super::check::{Checked, error, optional_positive};
 use crate::scene::error::SceneErrorKind as Kind;
 use crate::scene::model::{IntegratorKind, NewmarkOptions};
 
-/// The two numbers of Newmark's method.
+/// The numbers of Newmark's method.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NewmarkSpec {
@@ -19,6 +19,11 @@ pub struct NewmarkSpec {
     /// From 0.5 to 1: 0.5 damps nothing, more damps what moves fast; default: 0.5.
     #[serde(default)]
     pub gamma: Option<f64>,
+    /// Watches energy: a step that gains more than this share of the largest kinetic energy so far, beyond the work at what
+    /// is prescribed, is cut in half, down to solver.smallest_step, and then an error; default: energy is not watched. 1e-3
+    /// catches steps that are too long for a stiff membrane before they show.
+    #[serde(default)]
+    pub energy_growth: Option<f64>,
 }
 
 impl NewmarkSpec {
@@ -28,6 +33,7 @@ impl NewmarkSpec {
         NewmarkOptions {
             beta: self.beta.unwrap_or(default.beta),
             gamma: self.gamma.unwrap_or(default.gamma),
+            energy_growth: self.energy_growth,
         }
     }
 }
@@ -48,7 +54,8 @@ pub(super) fn check_newmark(spec: &SceneSpec) -> Checked {
         let help = "write integrator = \"newmark\", or leave solver.newmark out";
         return refuse(Kind::Conflict, "", message, help);
     }
-    let NewmarkOptions { beta, gamma } = newmark.resolve();
+    optional_positive("solver.newmark.energy_growth", newmark.energy_growth, "")?;
+    let NewmarkOptions { beta, gamma, .. } = newmark.resolve();
     if !(0.5..=1.0).contains(&gamma) {
         let message = format!("gamma must lie between 0.5 and 1, but it is {gamma}");
         let help = "0.5 damps nothing; less gains energy without bound";

@@ -1,7 +1,10 @@
 mod constraint;
 mod contact;
+mod damping;
+mod discrete_shells;
 mod obstacle;
 mod phase;
+mod process;
 
 use super::*;
 use crate::scene::error::SceneErrorKind as Kind;

@@ -31,6 +31,11 @@ fn checkpoint() -> Checkpoint {
                 time: 0.5,
                 q: vec![1.0, -0.0],
             }],
+            rests: vec![RestState {
+                curvature: vec![0.25, -3.5],
+                flow: vec![0.5, 0.0],
+            }],
+            angles: vec![vec![3.5, -0.25], vec![]],
             solver: WorkspaceHistory {
                 changing_pairs: vec![[0, 1], [0, 7]],
                 node_order: vec![2, 0, 1],
@@ -58,6 +63,7 @@ fn what_was_written_is_read_back() {
     let accelerated = Memory::Accelerated {
         stable_dt: f64::INFINITY,
         age: 7,
+        largest_kinetic: 0.25,
     };
     for memory in [Memory::None, accelerated] {
         written.snapshot.state.memory = memory;

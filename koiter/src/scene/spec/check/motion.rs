@@ -25,7 +25,7 @@ pub(super) fn check_motion(path: &str, motion: &MotionSpec) -> Checked {
     Ok(())
 }
 
-pub(super) fn check_schedule<T>(path: &str, schedule: &Schedule<T>) -> Checked {
+pub(in crate::scene::spec) fn check_schedule<T>(path: &str, schedule: &Schedule<T>) -> Checked {
     if schedule.times.is_empty() {
         return Err(
             error(Kind::OutOfRange, path, "the schedule has no keys".into())

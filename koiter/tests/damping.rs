@@ -1,0 +1,332 @@
+//! Damping takes energy and no momentum, at the rates that linear theory says.
+
+use std::f64::consts::TAU;
+
+use koiter::Vec3;
+use koiter::integrate::StepError;
+use koiter::mesh::generate::{GridDiagonals, grid};
+use koiter::scene::Simulation;
+use koiter::scene::model::*;
+
+/// A soft strip, bent, turning and flying.
+fn flying(integrator: IntegratorKind, bending: BendingModel, damping: DampingOptions) -> Model {
+    let mut surface = grid(0.1, 0.04, 6, 2, GridDiagonals::Checkerboard).unwrap();
+    let rest_positions = surface.positions.clone();
+    let mut velocities = Vec::new();
+    for x in &mut surface.positions {
+        x.z = 3e-3 * (40.0 * x.x + 10.0 * x.y).sin();
+        velocities.push(Vec3::new(0.7, -0.3, 0.5) + Vec3::new(5.0, 8.0, -6.0).cross(x));
+    }
+    let shell = Shell {
+        name: "strip".into(),
+        surface,
+        velocities,
+        rest_positions,
+        rest_curved: false,
+        thickness: 0.01,
+        density: 500.0,
+        youngs_modulus: 1e5,
+        poissons_ratio: 0.3,
+        composition: Composition {
+            damping,
+            ..Composition::default()
+        },
+        bending,
+        friction: 0.0,
+        contact_offset: 0.0,
+    };
+    Model {
+        shells: vec![shell],
+        contact: ContactOptions {
+            enabled: false,
+            ..Default::default()
+        },
+        solver: SolverOptions {
+            // Far below the errors and the round-off that are measured.
+            velocity_tolerance: 1e-10,
+            ..Default::default()
+        },
+        integrator,
+        ..Model::default()
+    }
+}
+
+const OF_STRAINS: DampingOptions = DampingOptions {
+    mass: 0.0,
+    stiffness: 2e-3,
+    hinges: 1e-5,
+};
+
+fn total(simulation: &Simulation) -> f64 {
+    simulation.energies().iter().map(|(_, e)| e).sum()
+}
+
+/// Σ m v, Σ m (x − β dt² a) × v.
+fn momenta(simulation: &Simulation, shift: f64) -> [Vec3; 2] {
+    let state = simulation.state();
+    let masses = simulation.masses();
+    let vector = |values: &[f64], v: usize| Vec3::from_column_slice(&values[3 * v..3 * v + 3]);
+    let vertices = 0..simulation.model().shells[0].surface.positions.len();
+    let mut sums = [Vec3::zeros(); 2];
+    for v in vertices {
+        let velocity = vector(&state.velocities, v) * masses[3 * v];
+        let arm = vector(&state.q, v) - vector(&state.accelerations, v) * shift;
+        sums[0] += velocity;
+        sums[1] += arm.cross(&velocity);
+    }
+    sums
+}
+
+#[test]
+fn damping_of_strains_takes_energy_and_no_momentum() {
+    for (integrator, beta, dt) in [
+        (IntegratorKind::ImplicitEuler, 0.25, 1e-3),
+        (IntegratorKind::Bdf2, 0.25, 1e-3),
+        (IntegratorKind::Newmark, 0.25, 1e-3),
+        (IntegratorKind::Newmark, 0.0, 5e-5),
+    ] {
+        let mut model = flying(integrator, BendingModel::DsTheta, OF_STRAINS);
+        model.solver.newmark.beta = beta;
+        let mut simulation = Simulation::new(model).unwrap();
+        let shift = beta * dt * dt;
+        let before = total(&simulation);
+        simulation.step(dt).unwrap();
+        let start = momenta(&simulation, shift);
+        let mut last = total(&simulation);
+        let mut taken = 0.0;
+        for _ in 0..100 {
+            let report = simulation.step(dt).unwrap();
+            let now = momenta(&simulation, shift);
+            let drift = [0, 1].map(|k| (now[k] - start[k]).norm() / start[k].norm());
+            // Newton's steps end below 1e-10 m/s. Backward differences keep angular momentum up to their order only.
+            assert!(drift[0] < 1e-10, "{integrator:?}: {drift:?}");
+            let has_angular = integrator == IntegratorKind::Newmark;
+            assert!(!has_angular || drift[1] < 1e-10, "{beta}: {drift:?}");
+            let damped = report.energies.iter().find(|(name, _)| *name == "damping");
+            taken += damped.unwrap().1;
+            if integrator == IntegratorKind::ImplicitEuler {
+                assert!(total(&simulation) <= last, "{integrator:?}");
+            }
+            last = total(&simulation);
+        }
+        assert!(
+            last < before && taken > 0.0,
+            "{integrator:?} {beta}: {before} {last} {taken}"
+        );
+    }
+}
+
+#[test]
+fn newmark_with_damping_never_has_more_energy_than_it_began_with() {
+    for bending in [BendingModel::DsTheta, BendingModel::Bac, BendingModel::Dkt] {
+        let model = flying(IntegratorKind::Newmark, bending, OF_STRAINS);
+        let mut simulation = Simulation::new(model).unwrap();
+        let mut last = total(&simulation);
+        let mut rises = 0.0f64;
+        let start = last;
+        for _ in 0..100 {
+            simulation.step(2e-4).unwrap();
+            rises = rises.max(total(&simulation) - last);
+            last = total(&simulation);
+        }
+        // Of the undamped method, whose energy is kept up to the square of the step.
+        assert!(rises < 1e-6 * start, "{bending:?}: {rises} of {start}");
+        assert!(last < 0.999 * start, "{bending:?}: {last} of {start}");
+    }
+}
+
+#[test]
+fn the_rest_of_the_balance_is_what_damping_took() {
+    // The forces at the end of a step are those of its middle up to the length of the step: halved, so is the difference.
+    let gap = |dt: f64| {
+        let model = flying(IntegratorKind::Newmark, BendingModel::DsTheta, OF_STRAINS);
+        let mut simulation = Simulation::new(model).unwrap();
+        let start = total(&simulation);
+        let mut taken = 0.0;
+        for _ in 0..(0.02 / dt).round() as usize {
+            let report = simulation.step(dt).unwrap();
+            taken += report
+                .energies
+                .iter()
+                .find(|(name, _)| *name == "damping")
+                .unwrap()
+                .1;
+        }
+        let lost = start - total(&simulation);
+        assert!(lost > 0.0);
+        (lost - taken).abs() / lost
+    };
+    let (coarse, fine) = (gap(2e-4), gap(1e-4));
+    assert!(fine < 0.7 * coarse && fine < 0.1, "{coarse} {fine}");
+}
+
+#[test]
+fn drag_takes_momentum_at_its_rate() {
+    let rate = 30.0;
+    let drag = DampingOptions {
+        mass: rate,
+        ..Default::default()
+    };
+    for (integrator, beta, dt) in [
+        (IntegratorKind::Bdf2, 0.25, 1e-3),
+        (IntegratorKind::Newmark, 0.25, 1e-3),
+        (IntegratorKind::Newmark, 0.0, 1e-4),
+    ] {
+        let mut model = flying(integrator, BendingModel::DsTheta, drag);
+        model.solver.newmark.beta = beta;
+        let mut simulation = Simulation::new(model).unwrap();
+        let start = momenta(&simulation, 0.0);
+        let steps = (0.05f64 / dt).round() as usize;
+        (0..steps).for_each(|_| drop(simulation.step(dt).unwrap()));
+        let share = (-rate * 0.05f64).exp();
+        for (now, start) in momenta(&simulation, 0.0).iter().zip(start) {
+            // Half of rate times the step, of first order in explicit steps and of the rest squared.
+            let error = (now - start * share).norm() / (start.norm() * share);
+            assert!(error < 0.01, "{integrator:?} {beta}: {error}");
+        }
+    }
+}
+
+#[test]
+fn a_rigid_motion_is_not_damped() {
+    for bending in [BendingModel::DsTheta, BendingModel::Dcs, BendingModel::Dkt] {
+        let mut model = flying(IntegratorKind::Newmark, bending, OF_STRAINS);
+        let shell = &mut model.shells[0];
+        shell.surface.positions = shell.rest_positions.clone();
+        shell.velocities.fill(Vec3::new(0.3, -0.2, 1.0));
+        let mut simulation = Simulation::new(model).unwrap();
+        let start = total(&simulation);
+        (0..50).for_each(|_| drop(simulation.step(1e-3).unwrap()));
+        assert!(
+            (total(&simulation) / start - 1.0).abs() < 1e-12,
+            "{bending:?}"
+        );
+    }
+    // A strip that turns is stretched, and steadily: what is lost is the vibration of the beginning, of the fourth order in ω.
+    let lost = |speed: f64| {
+        let mut model = flying(IntegratorKind::Newmark, BendingModel::DsTheta, OF_STRAINS);
+        let shell = &mut model.shells[0];
+        shell.surface.positions = shell.rest_positions.clone();
+        let turning = shell
+            .rest_positions
+            .iter()
+            .map(|x| Vec3::z().cross(x) * speed);
+        shell.velocities = turning.collect();
+        let mut simulation = Simulation::new(model).unwrap();
+        let start = total(&simulation);
+        (0..200).for_each(|_| drop(simulation.step(2e-4).unwrap()));
+        1.0 - total(&simulation) / start
+    };
+    let [slow, fast] = [2.0, 4.0].map(lost);
+    assert!(
+        slow < 1e-4 && (fast / slow - 4.0).abs() < 0.5,
+        "{slow} {fast}"
+    );
+}
+
+/// The share of the energy that a free vibration keeps over one period, and its angular frequency, for each damping.
+fn kept(bending: BendingModel, damping: DampingOptions) -> [f64; 2] {
+    let mut model = flying(IntegratorKind::Newmark, bending, damping);
+    let shell = &mut model.shells[0];
+    shell.surface.positions = shell.rest_positions.clone();
+    shell.velocities.fill(Vec3::zeros());
+    let mut simulation = Simulation::new(model.clone()).unwrap();
+    let modes = simulation.vibration_modes(7).unwrap();
+    let omega = modes[6].omega_squared.sqrt();
+    let mut snapshot = simulation.snapshot();
+    for (v, shape) in snapshot.state.velocities.iter_mut().zip(&modes[6].shape) {
+        *v = 1e-6 * shape;
+    }
+    let mut simulation = Simulation::new(model).unwrap();
+    simulation.restore(&snapshot).unwrap();
+    let start = total(&simulation);
+    (0..200).for_each(|_| drop(simulation.step(TAU / omega / 200.0).unwrap()));
+    [total(&simulation) / start, omega]
+}
+
+#[test]
+fn vibrations_decay_as_rayleigh_says() {
+    for bending in [BendingModel::DsTheta, BendingModel::Bac, BendingModel::Dkt] {
+        let omega = kept(bending, DampingOptions::default())[1];
+        let (mass, stiffness) = (0.02 * omega, 0.01 / omega);
+        let only = |mass, stiffness| DampingOptions {
+            mass,
+            stiffness,
+            hinges: 0.0,
+        };
+        let decay = |damping| -kept(bending, damping)[0].ln() * omega / TAU;
+        let plain = decay(DampingOptions::default());
+        assert!(plain.abs() < 1e-4 * omega, "{plain}");
+        // Energies fall with exp(−a t) and exp(−b ω² t); the damping shifts the phase of the period by its square.
+        for (damping, expected) in [
+            (only(mass, 0.0), mass),
+            (only(0.0, stiffness), stiffness * omega * omega),
+        ] {
+            let found = decay(damping);
+            assert!(
+                (found / expected - 1.0).abs() < 0.01,
+                "{bending:?}: {found} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn hinge_damping_of_twice_stiffness_times_a_time_is_damping_by_that_time() {
+    // k_D = 2 k_B b, k_B = C/2.
+    let time = 5e-4;
+    let rigidity = 1e5 * 0.01f64.powi(3) / (12.0 * (1.0 - 0.09));
+    let of_hinges = DampingOptions {
+        hinges: rigidity * time,
+        ..Default::default()
+    };
+    let of_stiffness = DampingOptions {
+        stiffness: time,
+        ..Default::default()
+    };
+    let [hinges, stiffness] =
+        [of_hinges, of_stiffness].map(|damping| 1.0 - kept(BendingModel::DsTheta, damping)[0]);
+    // The lowest vibration bends and hardly stretches.
+    assert!(
+        hinges > 1e-3 && (hinges / stiffness - 1.0).abs() < 0.01,
+        "{hinges} {stiffness}"
+    );
+}
+
+#[test]
+fn damping_shortens_the_stable_explicit_step() {
+    let stable = |stiffness: f64| {
+        let damping = DampingOptions {
+            stiffness,
+            ..Default::default()
+        };
+        let mut model = flying(IntegratorKind::Newmark, BendingModel::DsTheta, damping);
+        model.solver.newmark.beta = 0.0;
+        let mut dt = 0.01;
+        // The estimate is right near the step that is asked for.
+        for _ in 0..20 {
+            let mut simulation = Simulation::new(model.clone()).unwrap();
+            match simulation.step(dt) {
+                Err(StepError::Unstable { stable_dt, .. }) => dt = 0.999 * stable_dt,
+                Err(error) => panic!("{error}"),
+                Ok(_) => {
+                    let start = total(&simulation);
+                    (0..300).for_each(|_| drop(simulation.step(0.97 * dt).unwrap()));
+                    assert!(total(&simulation) < 1.5 * start);
+                    return dt;
+                }
+            }
+        }
+        panic!("no stable step");
+    };
+    // Steps are checked against 95 % of the estimate.
+    let free = stable(0.0) / 0.95;
+    let time = 0.5 * free;
+    // √(b² + 4/ω²) − b, with 2/ω without damping.
+    let expected = 0.95 * ((time * time + free * free).sqrt() - time);
+    let found = stable(time);
+    assert!(
+        (found / expected - 1.0).abs() < 0.005,
+        "{free} {found} {expected}"
+    );
+}
