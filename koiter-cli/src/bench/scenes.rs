@@ -335,7 +335,7 @@ impl Run {
     fn contact_share(&self) -> f64 {
         let spent = |part: &&str| self.parts.get(*part).copied().unwrap_or(0.0);
         let all: f64 = self.parts.values().sum();
-        CONTACT_PARTS.iter().map(|part| spent(part)).sum::<f64>() / all
+        CONTACT_PARTS.iter().map(spent).sum::<f64>() / all
     }
 
     /// What is wrong with it.
