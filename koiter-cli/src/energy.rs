@@ -9,7 +9,7 @@ use koiter::Vec3;
 use koiter::energy::bending::ExtraUnknowns;
 use koiter::io::read_mesh;
 use koiter::mesh::{Surface, SurfaceOptions, UnreferencedPolicy};
-use koiter::scene::measure::{Directors, Measurement};
+use koiter::scene::measure::{Directors, MeasuredShape, Measurement};
 use koiter::scene::model::BendingModel;
 
 use crate::arguments::{DirectorSource, EnergyArguments, RestCurvature, bending_models};
@@ -17,6 +17,12 @@ use crate::failure::Failure;
 use crate::output::{say, say_error};
 use director_file::DirectorFile;
 use report::Row;
+
+/// Powers of lengths [m] up to the eighth are numbers up to this, and from one over it on.
+const LARGEST_LENGTH: f64 = 1e30;
+
+/// Points of edges are at a minimum where their gradient [N] is smaller than this share of that of the positions.
+const AT_MINIMUM: f64 = 1e-3;
 
 /// Measures and prints.
 pub(crate) fn energy(arguments: &EnergyArguments) -> Result<(), Failure> {
@@ -116,10 +122,32 @@ impl Task<'_> {
         if let Some((caveat, help)) = measurement.caveat() {
             say_error!("warning: {caveat}; {help}");
         }
+        let unknowns = model.info().unknowns;
         let shape = match measurement.prepare(&directors) {
-            Ok(shape) if shape.is_admissible() => Ok(shape),
-            Ok(_) => Err(not_defined(&directors, model.info().unknowns)),
+            Ok(shape) if !shape.is_admissible() => Err(not_defined(&directors, unknowns)),
+            Ok(shape) if !shape.energies().bending.is_finite() => {
+                Err("its energy is not a number: thickness or moduli are too large".into())
+            }
+            Ok(shape) => Ok(shape),
             Err(error) => Err(error.to_string()),
+        };
+        let is_short = |shape: &MeasuredShape| {
+            let gradient = shape.gradient();
+            let of_points = gradient.directors.iter().map(|g| g * g).sum::<f64>();
+            let of_positions = gradient
+                .bending
+                .iter()
+                .map(|g| g.norm_squared())
+                .sum::<f64>();
+            of_points > AT_MINIMUM.powi(2) * of_positions
+        };
+        let directors_from = match (&directors, &shape) {
+            (Directors::Minimise, Ok(shape))
+                if unknowns == ExtraUnknowns::EdgePoints && is_short(shape) =>
+            {
+                "short of a minimum"
+            }
+            _ => directors_from,
         };
         Ok(Row {
             model,
@@ -162,7 +190,16 @@ fn read_surface(path: &Path) -> Result<Surface, Failure> {
         ..SurfaceOptions::default()
     };
     let mesh = read_mesh(path).map_err(Failure::input)?;
-    mesh.into_surface(options).map_err(Failure::input)
+    let surface = mesh.into_surface(options).map_err(Failure::input)?;
+    let largest = (surface.positions.iter()).fold(0.0, |m: f64, x| m.max(x.amax()));
+    let shortest = surface.shortest_edge_length();
+    if largest > LARGEST_LENGTH || shortest < 1.0 / LARGEST_LENGTH {
+        return Err(Failure::input(format!(
+            "{}: coordinates up to {largest:e} m and edges from {shortest:e} m are beyond what numbers hold; lengths are in metres",
+            path.display()
+        )));
+    }
+    Ok(surface)
 }
 
 fn check_same_faces(

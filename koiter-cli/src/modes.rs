@@ -4,7 +4,8 @@ use std::path::Path;
 
 use koiter::Vec3;
 use koiter::io::write::{MeshWithFields, write_ply};
-use koiter::scene::Simulation;
+use koiter::scene::model::IntegratorKind;
+use koiter::scene::{Scene, Simulation};
 use serde_json::json;
 
 use crate::arguments::ModesArguments;
@@ -21,6 +22,8 @@ const DRAWN: f64 = 0.1;
 struct Found {
     /// Hz, or the factor of the loads.
     value: f64,
+    /// ω² [1/s²] of a vibration.
+    omega_squared: Option<f64>,
     /// Whether the state resists the motion: not where ω² < 0.
     is_stable: bool,
     shape: Vec<f64>,
@@ -35,14 +38,13 @@ pub(crate) fn modes(arguments: &ModesArguments) -> Result<(), Failure> {
     let mut simulation = start(&loaded.scene.model, None)?;
     let count = arguments.count.min(simulation.masses().len());
     let found: Vec<Found> = if arguments.buckling {
-        let timeline = &loaded.scene.timeline;
-        let end = timeline.time(timeline.num_steps());
-        let time = arguments.at.unwrap_or(end);
+        let time = arguments.at.unwrap_or_else(|| last_load(&loaded.scene));
         let modes = simulation.buckling_modes(time, count);
         let modes = modes.map_err(Failure::run)?.into_iter();
         modes
             .map(|mode| Found {
                 value: mode.load_factor,
+                omega_squared: None,
                 is_stable: true,
                 shape: mode.shape,
             })
@@ -51,6 +53,7 @@ pub(crate) fn modes(arguments: &ModesArguments) -> Result<(), Failure> {
         let modes = simulation.vibration_modes(count).map_err(Failure::run)?;
         let modes = modes.into_iter().map(|mode| Found {
             value: mode.frequency(),
+            omega_squared: Some(mode.omega_squared),
             is_stable: mode.omega_squared >= 0.0,
             shape: mode.shape,
         });
@@ -65,6 +68,14 @@ pub(crate) fn modes(arguments: &ModesArguments) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The time of the largest loads that a scene plans: its end, or the last load factor of a path.
+fn last_load(scene: &Scene) -> f64 {
+    match scene.model.integrator {
+        IntegratorKind::ArcLength => scene.model.solver.last_load_factor,
+        _ => scene.timeline.time(scene.timeline.num_steps()),
+    }
+}
+
 fn file_name(number: usize) -> String {
     format!("mode-{number}.ply")
 }
@@ -77,7 +88,11 @@ fn print(arguments: &ModesArguments, found: &[Found]) {
     if arguments.json {
         let rows = (1..).zip(found).map(|(number, mode): (usize, _)| {
             let file = (arguments.shapes.as_ref()).map(|_| file_name(number));
-            json!({ key: mode.value, "stable": mode.is_stable, "shape": file })
+            let mut row = json!({ key: mode.value, "stable": mode.is_stable, "shape": file });
+            if let Some(square) = mode.omega_squared {
+                row["omega_squared"] = json!(square);
+            }
+            row
         });
         say!("{}", json!({ "modes": rows.collect::<Vec<_>>() }));
         return;

@@ -11,11 +11,12 @@ use super::SceneArguments;
 Without --buckling: the lowest free vibrations about the shape at the start, K φ = ω² M φ, under what is constrained and
 loaded there. Motions that nothing resists have the frequency 0.
 
-With --buckling: the lowest factors λ by which gravity and the loads of a time must grow until the structure buckles, if
-it answers linearly until then, (K + λ K_g) φ = 0. Contact is left out of both.
+With --buckling: the lowest factors λ by which gravity and the loads of a time must grow until the structure buckles,
+(K + λ K_g) φ = 0, where K_g comes from the membrane stresses of the linear response. That a structure changes its shape
+before, as a shallow roof does, is not seen: follow it with integrator = \"arc-length\". Contact is left out of both.
 
 Examples:
-  koiter modes cantilever
+  koiter modes cantilever                                 3.516 √(B / ρ h L⁴) / 2π = 1.24 Hz, and more
   koiter modes cantilever --count 12 --shapes modes      mode-1.ply, … with a tenth of the structure's extent as amplitude
   koiter modes lateral-buckling --buckling --at 1        there the time is the weight Γ*, so the factor is the critical one")]
 pub(crate) struct ModesArguments {
@@ -27,7 +28,7 @@ pub(crate) struct ModesArguments {
     /// Buckling loads instead of frequencies
     #[arg(long)]
     pub(crate) buckling: bool,
-    /// The time whose loads count [s] [default: the end of the scene]
+    /// The time whose loads count [s], or the load factor of an arc-length scene [default: the end of the scene]
     #[arg(long, value_name = "T", requires = "buckling", value_parser = parse_time)]
     pub(crate) at: Option<f64>,
     /// Write the shapes into this folder, as PLY

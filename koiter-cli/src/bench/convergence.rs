@@ -100,7 +100,24 @@ pub(super) fn bench(options: &ConvergenceArguments, as_json: bool) -> Result<(),
     } else {
         say!("{}", report::text(&study, &shapes, &models));
     }
-    Ok(())
+    let failed: Vec<String> = (study.cells.iter())
+        .filter(|cell| !cell.energy.is_finite())
+        .map(|cell| {
+            format!(
+                "{} with {}, level {}",
+                cell.shape.name(),
+                cell.model.info().name,
+                cell.level
+            )
+        })
+        .collect();
+    match failed.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::run(format!(
+            "no energy found: {}",
+            failed.join("; ")
+        ))),
+    }
 }
 
 impl Study {

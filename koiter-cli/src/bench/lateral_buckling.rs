@@ -103,6 +103,8 @@ pub(super) fn bench(options: &LateralBucklingArguments) -> Result<Table, Failure
         plot_curves(&studies, &widths, options, folder)?;
     }
     table.details = Some(studies.iter().map(Study::json).collect());
+    let failed = studies.iter().filter(|study| study.unconverged > 0);
+    table.failures = failed.map(Study::failure).collect();
     Ok(table)
 }
 
@@ -166,29 +168,38 @@ impl Study {
     }
 
     fn row(&self) -> Vec<Cell> {
+        let none = || Cell::Text("–".into());
         let reference = linear_buckling(self.width);
         let [stable, unstable] = self.onset;
         let onset = match self.critical_load() {
-            Some(load) => Cell::Text(format!("{load:.2}")),
+            Some(load) => Cell::Figure(load),
             None if unstable.is_finite() => Cell::Text(format!("below {unstable}")),
             None => Cell::Text(format!("above {stable}")),
         };
-        let deviation = (self.critical_load().zip(reference)).map_or_else(String::new, |(a, b)| {
-            format!("{:+.1} %", 100.0 * (a / b - 1.0))
-        });
+        let deviation = (self.critical_load().zip(reference)).map(|(a, b)| a / b - 1.0);
         vec![
-            Cell::Text(self.width.to_string()),
+            self.width.into(),
             self.bending.info().name.into(),
             self.triangles.into(),
             onset,
-            Cell::Text(reference.map_or_else(String::new, |load| format!("{load:.2}"))),
-            Cell::Text(deviation),
-            Cell::Text(format!("{:.2}", master_curve(self.width))),
+            reference.map_or(none(), Cell::Figure),
+            deviation.map_or(none(), Cell::Figure),
+            master_curve(self.width).into(),
             self.curve.last().map_or(0.0, |point| point[1]).into(),
             self.iterations.into(),
             self.unconverged.into(),
             self.seconds.into(),
         ]
+    }
+
+    fn failure(&self) -> String {
+        format!(
+            "{} with w/L = {}: {} of {} loads did not converge",
+            self.bending.info().name,
+            self.width,
+            self.unconverged,
+            self.curve.len()
+        )
     }
 
     fn json(&self) -> Value {

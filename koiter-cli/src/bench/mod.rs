@@ -34,9 +34,7 @@ pub(crate) fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         BenchSubject::CreasedVee(options) => {
             return creased_vee::bench(options, arguments.json);
         }
-        BenchSubject::Scenes(options) => {
-            return scenes::bench(options, arguments.json);
-        }
+        BenchSubject::Scenes(options) => scenes::bench(options),
         BenchSubject::Models(options) => models::bench(options),
         BenchSubject::LateralBuckling(options) => lateral_buckling::bench(options),
     }?;
@@ -45,7 +43,10 @@ pub(crate) fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
     } else {
         say!("{table}");
     }
-    Ok(())
+    match table.failures.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::run(table.failures.join("\n"))),
+    }
 }
 
 /// Seconds of the fastest of `repeats` runs.

@@ -18,7 +18,6 @@ use super::published::{number, rows};
 use super::table::{Cell, Table};
 use crate::arguments::{SceneArguments, ScenesArguments, Variation, bending_models};
 use crate::failure::Failure;
-use crate::output::say;
 use crate::scene_source::load_silently;
 
 /// Parts of a step that are contact.
@@ -27,13 +26,12 @@ const CONTACT_PARTS: [&str; 3] = ["contact", "collision_detection", "audit"];
 /// Factor of the variations.
 const FACTOR: f64 = 4.0;
 
-/// Runs, prints and judges.
-pub(super) fn bench(options: &ScenesArguments, as_json: bool) -> Result<(), Failure> {
+pub(super) fn bench(options: &ScenesArguments) -> Result<Table, Failure> {
     let published: Vec<Published> = Published::all().collect();
     let names = chosen(&options.scenes, &published)?;
     let models = bending_models(&options.models).map_err(Failure::input)?;
     let mut table = Table::new("contact-rich scenes", COLUMNS);
-    let (mut details, mut faults) = (Vec::new(), Vec::new());
+    let mut details = Vec::new();
     for name in names {
         let of_scene = published.iter().filter(|row| row.scene == name);
         let of_scene: Vec<BendingModel> = of_scene.map(|row| row.bending).collect();
@@ -55,19 +53,12 @@ pub(super) fn bench(options: &ScenesArguments, as_json: bool) -> Result<(), Fail
                     .flatten();
                 table.push(run.row(&task, beside));
                 details.push(run.json(&task));
-                faults.extend(run.fault(&task));
+                table.failures.extend(run.fault(&task));
             }
         }
     }
     table.details = Some(Value::Array(details));
-    match as_json {
-        true => say!("{}", table.json()),
-        false => say!("{table}"),
-    }
-    match faults.is_empty() {
-        true => Ok(()),
-        false => Err(Failure::run(faults.join("\n"))),
-    }
+    Ok(table)
 }
 
 const COLUMNS: &[(&str, &str)] = &[

@@ -11,6 +11,8 @@ pub(super) struct Table {
     rows: Vec<Vec<Cell>>,
     /// What scripts get beside the rows: curves and the like.
     pub(super) details: Option<Value>,
+    /// What could not be measured, a line each; the program then ends with a failure.
+    pub(super) failures: Vec<String>,
 }
 
 /// An entry of a table.
@@ -62,6 +64,7 @@ impl Table {
             columns,
             rows: Vec::new(),
             details: None,
+            failures: Vec::new(),
         }
     }
 

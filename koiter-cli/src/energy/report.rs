@@ -28,7 +28,8 @@ pub(super) fn text(membrane: &MeasuredShape, rows: &[Row]) -> String {
         let name = row.model.info().name;
         match &row.shape {
             Ok(shape) => {
-                let energy = format!("{:.6e}", shape.energies().bending);
+                // Without the sign of a zero.
+                let energy = format!("{:.6e}", shape.energies().bending + 0.0);
                 format!("{name:10}  {energy:<12}  {}", row.directors_from)
             }
             Err(_) => format!("{name:10}  {:<12}  not computed", "-"),

@@ -200,6 +200,15 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
         }
     }
 
+    fn add_stress_stiffness(&self, q: &[f64], motion: &[f64], hessian: &mut HessianBuilder<'_>) {
+        for stencil in 0..self.nodes.len() {
+            let (here, along) = (self.gather(stencil, q), self.gather(stencil, motion));
+            if let Some(local) = self.local.stress_stiffness(stencil, &here, &along) {
+                self.scatter_hessian(stencil, &local, hessian);
+            }
+        }
+    }
+
     fn add_to_pattern(&self, _q: &[f64], pattern: &mut PatternBuilder) {
         for nodes in &self.nodes {
             let all = nodes.iter().flatten().map(|(_, node)| *node);

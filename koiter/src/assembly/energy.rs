@@ -115,6 +115,15 @@ pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
     fn set_rest(&mut self, _stencil: usize, _measures: &[f64]) {}
     /// See [`RestMeasures::follow`].
     fn follow(&mut self, _stencil: usize, _measures: &[f64]) {}
+    /// See [`Energy::add_stress_stiffness`]; `None` of energies without stress.
+    fn stress_stiffness(
+        &self,
+        _stencil: usize,
+        _q: &SVector<f64, N>,
+        _motion: &SVector<f64, N>,
+    ) -> Option<SMatrix<f64, N, N>> {
+        None
+    }
     /// The element in the user's terms.
     fn describe(&self, stencil: usize) -> String;
     /// See [`Energy::at_held_positions`]; `unknowns` gives those of an element.
@@ -213,6 +222,10 @@ pub trait Energy: Send + Sync {
     /// What limited the last step, in the user's terms.
     fn step_limiter(&self) -> Option<String> {
         None
+    }
+    /// Adds the stiffness that the stresses of a small motion from `q` lend, `δσ : ∂²ε` with `δσ = C δε`: of the change of
+    /// the Hessian along the motion the part that is not due to the change of shape.
+    fn add_stress_stiffness(&self, _q: &[f64], _motion: &[f64], _hessian: &mut HessianBuilder<'_>) {
     }
     /// The same energy over its directors alone, with positions held at those of `q`; `None` of energies that have no
     /// directors, or no cheaper form.

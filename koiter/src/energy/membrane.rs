@@ -86,6 +86,15 @@ impl<S: Section> Membrane<S> {
         let columns = self.columns(face, q);
         let response = self.response(face, &columns);
         let by_columns = hessian_by_columns(&columns, &response.stress, &response.tangent, kept);
+        LocalHessian {
+            value: response.density,
+            gradient: self.gradient_from(face, &columns, &response.stress),
+            hessian: self.by_corners(face, &by_columns),
+        }
+    }
+
+    /// Second derivatives by the corners from those by the stacked columns of F.
+    fn by_corners(&self, face: usize, by_columns: &Matrix6<f64>) -> SMatrix<f64, 9, 9> {
         let weights = self.frames[face].corner_weights();
         let mut hessian = SMatrix::<f64, 9, 9>::zeros();
         for a in 0..3 {
@@ -102,11 +111,7 @@ impl<S: Section> Membrane<S> {
                     .copy_from(&block);
             }
         }
-        LocalHessian {
-            value: response.density,
-            gradient: self.gradient_from(face, &columns, &response.stress),
-            hessian,
-        }
+        hessian
     }
 }
 
@@ -126,7 +131,7 @@ fn hessian_by_columns(
     tangent: &nalgebra::Matrix3<f64>,
     kept: f64,
 ) -> Matrix6<f64> {
-    let mut geometric = nalgebra::Matrix2::new(stress.x, 0.5 * stress.z, 0.5 * stress.z, stress.y);
+    let mut geometric = stress_matrix(stress);
     let zero = Vec3::zeros();
     let jacobian = [(*f1, zero), (zero, *f2), (f2 * 0.5, f1 * 0.5)]
         .map(|(a, b)| SVector::<f64, 6>::from_column_slice(&[a.x, a.y, a.z, b.x, b.y, b.z]));
@@ -172,6 +177,11 @@ fn hessian_by_columns(
         }
     }
     h
+}
+
+/// G.
+fn stress_matrix(stress: &Vector3<f64>) -> nalgebra::Matrix2<f64> {
+    nalgebra::Matrix2::new(stress.x, 0.5 * stress.z, 0.5 * stress.z, stress.y)
 }
 
 fn geometric_part(
@@ -240,6 +250,20 @@ impl<S: Section> LocalEnergy<9, 3> for Membrane<S> {
 
     fn set_rest(&mut self, stencil: usize, measures: &[f64]) {
         self.rest_strains[stencil] = Vector3::from_column_slice(measures);
+    }
+
+    fn stress_stiffness(
+        &self,
+        stencil: usize,
+        q: &SVector<f64, 9>,
+        motion: &SVector<f64, 9>,
+    ) -> Option<SMatrix<f64, 9, 9>> {
+        // F is linear in the corners.
+        let ([f1, f2], [d1, d2]) = (self.columns(stencil, q), self.columns(stencil, motion));
+        let strain = Vector3::new(f1.dot(&d1), f2.dot(&d2), 0.5 * (f1.dot(&d2) + f2.dot(&d1)));
+        let stress = self.response(stencil, &[f1, f2]).tangent * strain;
+        let by_columns = geometric_part(&stress_matrix(&stress), &nalgebra::Matrix3::identity());
+        Some(self.by_corners(stencil, &by_columns))
     }
 
     fn describe(&self, stencil: usize) -> String {

@@ -3,13 +3,13 @@
 //! ```text
 //! K u = f                    response to forces
 //! K φ = ω² M φ               free vibrations
-//! (K + λ K_g) φ = 0          buckling under λ times the loads,    K_g = d/ds K(q + s u) at s = 0
+//! (K + λ K_g) φ = 0          buckling under λ times the loads,    K_g = σ(u) : ∂²ε
 //! ```
 //!
 //! K is the exact Hessian of elastic energies and clamps [N/m], f minus the gradient of everything at the state [N], M the
-//! lumped masses [kg] and rotational inertias [kg·m²]; prescribed unknowns are eliminated. K_g is the rate at which the
-//! linear response u to the loads changes the stiffness, and the stiffness of pressure, which turns with the surface.
-//! Contact is left out. Reference: T. Belytschko, W. K. Liu, B. Moran, "Nonlinear Finite Elements" (2000), section 6.5.
+//! lumped masses [kg] and rotational inertias [kg·m²]; prescribed unknowns are eliminated. K_g is the stiffness that the
+//! membrane stresses of the linear response u to the loads lend, and that of pressure, which turns with the surface; that
+//! u changes the shape is left out, as linear buckling theory does (docs/decisions/0009). Contact is left out. Reference: T. Belytschko, W. K. Liu, B. Moran, "Nonlinear Finite Elements" (2000), section 6.5.
 
 use super::system::{Prescribed, System};
 use crate::assembly::{ConfigurationSpace, Energy, HessianBuilder, PsdProjection, SymmetricMatrix};
@@ -44,7 +44,7 @@ pub enum LinearError {
 /// A vibration about a state.
 #[derive(Clone, Debug)]
 pub struct VibrationMode {
-    /// ω² [1/s²]; negative where the state is not stable, 0 up to round-off for motions without resistance.
+    /// ω² [1/s²]; negative where the state is not stable, 0 for motions without resistance.
     pub omega_squared: f64,
     /// φ over the solved unknowns, φᵀ M φ = 1.
     pub shape: Vec<f64>,
@@ -74,9 +74,12 @@ const SHIFT: f64 = 1e-6;
 const SHIFT_GROWTH: f64 = 10.0;
 const MAX_SHIFTS: usize = 12;
 
-/// K_g is a difference over motions of this size, in sizes of the smallest rest face: its square is the relative error of
-/// the difference, round-off over it the other.
-const DIFFERENCE: f64 = 1e-3;
+/// |ω²| over the largest ratio of stiffness to mass that counts as zero: round-off leaves motions without resistance 1e-16
+/// of it, and what is slower than this cannot be told from them.
+const ROUND_OFF: f64 = 1e-14;
+
+/// Factors on loads beyond this are those of stresses that are round-off.
+const LARGEST_FACTOR: f64 = 1e9;
 
 /// Second derivatives with prescribed unknowns eliminated, and their factor.
 struct Factorized {
@@ -94,6 +97,19 @@ impl System {
         q: &[f64],
         prescribed: &Prescribed,
     ) -> Result<Vec<f64>, LinearError> {
+        let (matrix, gradient) = self.second_derivatives(q, Part::Elastic);
+        let force = gradient.iter().map(|g| -g).collect();
+        self.response_to(force, matrix, q, prescribed)
+    }
+
+    /// u as above for a force over all unknowns.
+    fn response_to(
+        &self,
+        mut force: Vec<f64>,
+        mut matrix: SymmetricMatrix,
+        q: &[f64],
+        prescribed: &Prescribed,
+    ) -> Result<Vec<f64>, LinearError> {
         let solved = self.layout.num_solved_dofs();
         let mut u: Vec<f64> = (0..q.len())
             .map(|i| match i >= solved || prescribed.is_fixed[i] {
@@ -101,8 +117,7 @@ impl System {
                 false => 0.0,
             })
             .collect();
-        let (mut matrix, gradient) = self.second_derivatives(q, Part::Elastic);
-        let mut force: Vec<f64> = gradient[..solved].iter().map(|g| -g).collect();
+        force.truncate(solved);
         matrix.fix(&prescribed.is_fixed, &u[..solved], &mut force);
         self.factorized(matrix)?.factor.solve(&mut force);
         u[..solved].copy_from_slice(&force);
@@ -126,6 +141,7 @@ impl System {
         let masses: Vec<f64> = (self.masses.iter().zip(is_fixed))
             .map(|(mass, fixed)| if *fixed { 0.0 } else { *mass })
             .collect();
+        let (_, stiffest) = ratios(&tangent, &masses);
         let (mut shifted, shift) = self.shifted(tangent, &masses)?;
         let multiply =
             |x: &[f64]| -> Vec<f64> { x.iter().zip(&masses).map(|(x, m)| x * m).collect() };
@@ -134,7 +150,10 @@ impl System {
         let positive = pairs.into_iter().filter(|pair| pair.value > 0.0);
         Ok(positive
             .map(|pair| VibrationMode {
-                omega_squared: 1.0 / pair.value - shift,
+                omega_squared: match 1.0 / pair.value - shift {
+                    square if square.abs() <= ROUND_OFF * stiffest => 0.0,
+                    square => square,
+                },
                 // φᵀ (K + σ M) φ = 1 and M φ = θ (K + σ M) φ: the mass of φ is θ.
                 shape: (pair.vector.iter())
                     .map(|x| x / pair.value.sqrt())
@@ -158,18 +177,25 @@ impl System {
             is_fixed: is_fixed.to_vec(),
             target: q.to_vec(),
         };
-        let u = self.linear_response(q, &still)?;
+        let mut force = vec![0.0; q.len()];
+        self.gravity.add_gradient(q, &mut force);
+        self.loads.add_gradient(q, &mut force);
+        force.iter_mut().for_each(|f| *f = -*f);
+        if (force.iter().zip(is_fixed)).all(|(f, fixed)| *fixed || *f == 0.0) {
+            return Ok(Vec::new());
+        }
+        let elastic = self.second_derivatives(q, Part::Elastic).0;
+        let u = self.response_to(force, elastic, q, &still)?;
         let mut geometric = self.second_derivatives(q, Part::Loads).0;
-        let moved = self.space.displacement(q, &u);
-        if moved > 0.0 {
-            let step = DIFFERENCE * self.smallest_rest_face() / moved;
-            for signed in [step, -step] {
-                let along: Vec<f64> = u.iter().map(|x| x * signed).collect();
-                let mut there = vec![0.0; q.len()];
-                self.space.retract(q, &along, &mut there);
-                let tangent = self.second_derivatives(&there, Part::Elastic).0;
-                add(&mut geometric, 0.5 / signed, &tangent);
-            }
+        let solved = self.layout.num_solved_dofs();
+        let mut builder = HessianBuilder {
+            matrix: &mut geometric,
+            layout: &self.layout,
+            prescribed_step: &vec![0.0; q.len() - solved],
+            coupling: &mut vec![0.0; solved],
+        };
+        for energy in &self.elastic {
+            energy.add_stress_stiffness(q, &u, &mut builder);
         }
         eliminate(&mut geometric, is_fixed, 0.0);
         let mut stiffness = self.second_derivatives(q, Part::Elastic).0;
@@ -178,8 +204,8 @@ impl System {
         let multiply =
             |x: &[f64]| -> Vec<f64> { geometric.multiply(x).iter().map(|y| -y).collect() };
         let pairs = largest_eigenpairs(&matrix, factor.as_mut(), &multiply, count)?;
-        let positive = pairs.into_iter().filter(|pair| pair.value > 0.0);
-        Ok(positive
+        let real = (pairs.into_iter()).filter(|pair| pair.value > 1.0 / LARGEST_FACTOR);
+        Ok(real
             .map(|pair| BucklingMode {
                 load_factor: 1.0 / pair.value,
                 shape: pair.vector,
@@ -254,11 +280,8 @@ impl System {
         masses: &[f64],
     ) -> Result<(Factorized, f64), LinearError> {
         let pattern = tangent.pattern.clone();
-        let ratio = (masses.iter().zip(pattern.diagonal_positions()))
-            .filter(|(mass, _)| **mass > 0.0)
-            .map(|(mass, &position)| tangent.values[position as usize].abs() / mass)
-            .fold(f64::INFINITY, f64::min);
-        let mut shift = SHIFT * ratio;
+        let (softest, _) = ratios(&tangent, masses);
+        let mut shift = SHIFT * softest;
         let mut result = None;
         for _ in 0..MAX_SHIFTS {
             let mut matrix = tangent.clone();
@@ -272,12 +295,6 @@ impl System {
             shift *= SHIFT_GROWTH;
         }
         Err(result.expect("at least one shift is tried"))
-    }
-
-    /// Length of the legs of the smallest rest face, were it half a square [m].
-    fn smallest_rest_face(&self) -> f64 {
-        let faces = self.space.shells.iter().flat_map(|shell| &shell.frames);
-        (2.0 * faces.map(|frame| frame.area).fold(f64::INFINITY, f64::min)).sqrt()
     }
 }
 
@@ -298,6 +315,16 @@ fn add(sum: &mut SymmetricMatrix, factor: f64, matrix: &SymmetricMatrix) {
     for (value, entry) in sum.values.iter_mut().zip(&matrix.values) {
         *value += factor * entry;
     }
+}
+
+/// The smallest and the largest ratio of stiffness to mass on the diagonal [1/s²]; unknowns without mass are left out.
+fn ratios(stiffness: &SymmetricMatrix, masses: &[f64]) -> (f64, f64) {
+    (masses.iter().zip(stiffness.pattern.diagonal_positions()))
+        .filter(|(mass, _)| **mass > 0.0)
+        .map(|(mass, &position)| stiffness.values[position as usize].abs() / mass)
+        .fold((f64::INFINITY, 0.0), |(low, high), ratio| {
+            (low.min(ratio), high.max(ratio))
+        })
 }
 
 /// Takes the rows and columns of prescribed unknowns out and leaves `diagonal` there.

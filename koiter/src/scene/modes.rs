@@ -18,8 +18,9 @@ impl Simulation {
     }
 
     /// The `count` lowest factors by which the loads and gravity of a `time` [s] buckle the structure, increasing; fewer if
-    /// there are no more. The structure is as stiff as in the present state, which should be one at rest, and responds
-    /// linearly up to buckling. Contact is left out.
+    /// there are no more. On a path by arc length, `time` is the load factor. The structure is as stiff as in the present
+    /// state, which should be one at rest, and answers by stresses alone until it buckles: that it bends before, as a roof
+    /// does, is not seen. Contact is left out.
     ///
     /// # Errors
     /// See [`LinearError`].
@@ -28,7 +29,10 @@ impl Simulation {
         time: f64,
         count: usize,
     ) -> Result<Vec<BucklingMode>, LinearError> {
-        self.apply_schedules(time);
+        match &self.load_pattern {
+            Some(pattern) => pattern.apply(time, &mut self.system),
+            None => self.apply_schedules(time),
+        }
         let prescribed = self.prescribed_at(self.state.time);
         let fixed = &prescribed.is_fixed;
         let modes = self.system.buckling_modes(&self.state.q, fixed, count);

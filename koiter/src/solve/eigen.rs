@@ -78,6 +78,10 @@ pub fn largest_eigenpairs(
     // An image has no part that B does not see: motions without mass, prescribed unknowns.
     let (_, mut block) = image(&start_vectors(n, count + SPARE));
     space.make_orthogonal(&mut block);
+    if block.is_empty() {
+        // B is zero.
+        return Ok(Vec::new());
+    }
     let mut projected = DMatrix::zeros(0, 0);
     let mut ritz = Ritz::default();
     for _ in 0..MAX_BLOCKS {

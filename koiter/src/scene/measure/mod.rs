@@ -15,6 +15,7 @@ pub use refinement::{Refinement, Trend};
 use std::ops::Range;
 
 use super::assemble::{BuildError, Unknowns, write_points};
+use super::composition::CompositionError;
 use super::elastic::Elastic;
 use super::model::{
     BendingModel, Composition, ContactOptions, IntegratorKind, Model, Shell, SolverOptions,
@@ -154,7 +155,11 @@ impl Measurement<'_> {
         let elastic = Elastic::new(&model, &unknowns, &mut q).map_err(|error| match error {
             // The shape itself, as its own rest shape.
             BuildError::Rest { error, .. } if self.is_at_rest() => error.of_shape_itself(),
-            BuildError::Rest { error, .. } => error,
+            BuildError::Rest { error, .. }
+            | BuildError::Composition {
+                error: CompositionError::Rest(error),
+                ..
+            } => error,
             other => unreachable!("a single shell without contact: {other}"),
         })?;
         Ok((unknowns, elastic, q))
