@@ -326,6 +326,8 @@ fn modes_are_those_of_a_strip_and_of_a_heavy_plate() {
     let factor = found["modes"][0]["load_factor"].as_f64().unwrap();
     // 21.60 with converged plates (benchmarks/lateral-buckling); 19.8 on a quarter of these triangles, so 2 % remain.
     assert!((factor / 21.6 - 1.0).abs() < 0.03, "{factor}");
+    let bent = done(&["modes", "cantilever", "--buckling", "--json"]);
+    assert_eq!(bent.trim(), r#"{"modes":[]}"#);
     refused(&["modes", "cantilever", "--count", "0"], 2);
     refused(&["modes", "cantilever", "--at", "1"], 2);
 }

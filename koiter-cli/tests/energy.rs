@@ -293,6 +293,35 @@ fn bad_directors_are_refused_with_their_place() {
 }
 
 #[test]
+fn sizes_that_numbers_do_not_hold_are_refused_and_energies_that_are_none_have_a_reason() {
+    let folder = Folder::new();
+    for scale in ["e160", "e-170"] {
+        let scaled = TENT.replace("0.5 0.5 0.2", &format!("0.5{scale} 0.5{scale} 0.2{scale}"));
+        let mesh = folder.write("huge.obj", &scaled);
+        let said = refused(&[&["energy", "--deformed", &mesh][..], &SHELL].concat());
+        assert!(
+            said.contains("beyond what numbers hold") || said.contains("no area"),
+            "{said}"
+        );
+    }
+    let mesh = folder.write("tent.obj", TENT);
+    let thick = ["--thickness", "1e200", "--young", "1e9", "--poisson", "0.3"];
+    let output = koiter(
+        &[
+            &["energy", "--deformed", &mesh, "--model", "qb-pl"][..],
+            &thick,
+        ]
+        .concat(),
+    );
+    assert_eq!(status(&output), 1);
+    assert!(
+        stderr(&output).contains("not a number"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
 fn numbers_and_names_out_of_range_are_refused() {
     let folder = Folder::new();
     let tent = folder.write("tent.obj", TENT);

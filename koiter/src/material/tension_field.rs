@@ -11,7 +11,9 @@
 //! semidefinite form; it is convex and has continuous stress. The tangent jumps between states; at a switch it is that of
 //! the state with more tension (at zero strain: taut), so at rest it is that of St. Venant–Kirchhoff. Bending is that
 //! of the material: wrinkles are softer, but how much depends on their length, which the mesh does not resolve. A slack
-//! face has no stiffness in its plane; the solver then shifts its matrix. References: Pipkin (1986); Steigmann (1990).
+//! face has no stiffness in its plane; the solver then shifts its matrix. It may then shrink for nothing, and curvatures,
+//! which are those of the deformed face over rest lengths, shrink with it: models with a second fundamental form lose
+//! their bending stiffness where a sheet is not kept taut, and hang straight down. References: Pipkin (1986); Steigmann (1990).
 
 use nalgebra::{Matrix3, Vector3};
 

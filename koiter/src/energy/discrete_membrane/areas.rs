@@ -64,6 +64,21 @@ impl Face {
         let along = self.edges[0].normalize();
         [along, self.normal.cross(&along)]
     }
+
+    /// Second derivatives by the corners: `plane` by e₁ and e₂ in the basis, and `upright` times ∂²A out of the plane.
+    fn by_corners(&self, plane: &Matrix4<f64>, upright: f64) -> SMatrix<f64, 9, 9> {
+        let basis = self.basis();
+        let [a, b] = (self.edges).map(|e| Vector2::new(basis[0].dot(&e), basis[1].dot(&e)));
+        let squares = Matrix2::new(b.dot(&b), -a.dot(&b), -a.dot(&b), a.dot(&a));
+        let normal = squares * (upright / (4.0 * self.area));
+        by_corners(|p, r| {
+            let mut block = self.normal * self.normal.transpose() * normal[(p, r)];
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                block += basis[i] * basis[j].transpose() * plane[(2 * p + i, 2 * r + j)];
+            }
+            block
+        })
+    }
 }
 
 impl FaceAreas {
@@ -102,31 +117,15 @@ impl FaceAreas {
         let basis = at.basis();
         let in_plane = Vector4::from_fn(|i, _| basis[i % 2].dot(&slope[i / 2]));
         let mut plane: Matrix4<f64> = in_plane * in_plane.transpose() * (2.0 * k / (rest * rest));
-        // n·(δ₁ × δ₂): the first component of δ₁ with the second of δ₂, less the other way round.
-        for (i, j, signed) in [(0, 3, 0.5), (1, 2, -0.5)] {
-            plane[(i, j)] += force * signed;
-            plane[(j, i)] += force * signed;
-        }
+        plane += in_plane_curvature(force);
         if kept < 1.0 {
             project_to_psd(&mut plane, kept);
         }
-        let [a, b] = at
-            .edges
-            .map(|edge| Vector2::new(basis[0].dot(&edge), basis[1].dot(&edge)));
-        let squares = Matrix2::new(b.dot(&b), -a.dot(&b), -a.dot(&b), a.dot(&a));
         let upright = if force < 0.0 { kept * force } else { force };
-        let normal = squares * (upright / (4.0 * at.area));
-        let by_edges = |p: usize, r: usize| {
-            let mut block = at.normal * at.normal.transpose() * normal[(p, r)];
-            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                block += basis[i] * basis[j].transpose() * plane[(2 * p + i, 2 * r + j)];
-            }
-            block
-        };
         LocalHessian {
             value: k * offset * offset,
             gradient: corners(&slope, force),
-            hessian: by_corners(by_edges),
+            hessian: at.by_corners(&plane, upright),
         }
     }
 
@@ -138,6 +137,16 @@ impl FaceAreas {
         let change = doubled * (0.5 / self.areas[face]) - 1.0 - self.rest[face];
         change * change * self.stiffness[face]
     }
+}
+
+/// `force` times ∂²A in the plane, n·(δ₁ × δ₂): the first component of δ₁ with the second of δ₂, less the other way round.
+fn in_plane_curvature(force: f64) -> Matrix4<f64> {
+    let mut plane = Matrix4::zeros();
+    for (i, j, signed) in [(0, 3, 0.5), (1, 2, -0.5)] {
+        plane[(i, j)] = force * signed;
+        plane[(j, i)] = force * signed;
+    }
+    plane
 }
 
 /// What a change by the edges, times a factor, is by the corners.
@@ -205,6 +214,18 @@ impl LocalEnergy<9, 3> for FaceAreas {
 
     fn set_rest(&mut self, face: usize, measures: &[f64]) {
         self.rest[face] = measures[0];
+    }
+
+    fn stress_stiffness(
+        &self,
+        face: usize,
+        q: &SVector<f64, 9>,
+        motion: &SVector<f64, 9>,
+    ) -> Option<SMatrix<f64, 9, 9>> {
+        let at = Face::new(q);
+        let larger = corners(&at.slope(), 1.0).dot(motion);
+        let force = 2.0 * self.stiffness[face] * larger / self.areas[face].powi(2);
+        Some(at.by_corners(&in_plane_curvature(force), force))
     }
 
     fn describe(&self, face: usize) -> String {

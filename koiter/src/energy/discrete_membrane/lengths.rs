@@ -69,17 +69,10 @@ impl EdgeLengths {
         let squared = along * along.transpose();
         let block =
             (squared + (Matrix3::identity() - squared) * across) * (2.0 * k / (rest * rest));
-        let mut hessian = SMatrix::<f64, 6, 6>::zeros();
-        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-            let signed = if i == j { block } else { -block };
-            hessian
-                .fixed_view_mut::<3, 3>(3 * i, 3 * j)
-                .copy_from(&signed);
-        }
         LocalHessian {
             value: k * offset * offset,
             gradient: ends(&(along * (2.0 * k * offset / rest))),
-            hessian,
+            hessian: between_ends(&block),
         }
     }
 
@@ -100,6 +93,16 @@ fn ends(on_second: &Vec3) -> SVector<f64, 6> {
             on_second[i - 3]
         }
     })
+}
+
+/// Second derivatives by both ends from those by the edge.
+fn between_ends(block: &Matrix3<f64>) -> SMatrix<f64, 6, 6> {
+    let mut hessian = SMatrix::<f64, 6, 6>::zeros();
+    for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let signed = if i == j { *block } else { -block };
+        (hessian.fixed_view_mut::<3, 3>(3 * i, 3 * j)).copy_from(&signed);
+    }
+    hessian
 }
 
 impl LocalEnergy<6, 2> for EdgeLengths {
@@ -147,6 +150,19 @@ impl LocalEnergy<6, 2> for EdgeLengths {
 
     fn set_rest(&mut self, edge: usize, measures: &[f64]) {
         self.rest[edge] = measures[0];
+    }
+
+    fn stress_stiffness(
+        &self,
+        edge: usize,
+        q: &SVector<f64, 6>,
+        motion: &SVector<f64, 6>,
+    ) -> Option<SMatrix<f64, 6, 6>> {
+        let (along, length, _) = self.at(edge, q);
+        let longer = along.dot(&(motion.fixed_rows::<3>(3) - motion.fixed_rows::<3>(0)));
+        let tension = 2.0 * self.stiffness[edge] * longer / self.lengths[edge].powi(2);
+        let across = Matrix3::identity() - along * along.transpose();
+        Some(between_ends(&(across * (tension / length))))
     }
 
     fn describe(&self, edge: usize) -> String {
