@@ -1,11 +1,13 @@
 //! The membrane of Discrete Shells has the stiffness of its material, as far as springs can.
 
-use koiter::assembly::{Assembled, Dof, DofLayout, Energy};
+use koiter::Vec3;
+use koiter::assembly::{Assembled, Dof, DofLayout, Energy, LocalEnergy};
 use koiter::energy::{DiscreteStiffness, EdgeLengths, FaceAreas, Membrane};
 use koiter::material::{Homogeneous, StVenantKirchhoff};
-use koiter::mesh::Surface;
 use koiter::mesh::generate::irregular;
+use koiter::mesh::{Surface, TriMesh};
 use koiter::rest::rest_frames;
+use nalgebra::SVector;
 
 const YOUNG: f64 = 2e5;
 const THICKNESS: f64 = 0.01;
@@ -67,4 +69,62 @@ fn a_ratio_below_a_third_acts_as_a_third() {
     // All around: E/(1 − ν) with ν = 1/3 and the same shear modulus is twice that with ν = 0.
     let [koiter, springs] = energies(0.0, 2.5e-3, [1e-4, 1e-4, 0.0]);
     assert!((springs / koiter - 2.0).abs() < 0.1, "{koiter} {springs}");
+}
+
+/// The largest difference, over the largest entry, between the stress stiffness of a motion in the plane of a flat face and
+/// the change of the Hessian along it, out of the plane, where the change of shape has no part.
+fn stress_stiffness_error<const N: usize, const K: usize>(energy: &impl LocalEnergy<N, K>) -> f64 {
+    let at_rest = |i: usize| [0.0, 0.0, 0.0, 1.0, 0.2, 0.0, 0.3, 0.9, 0.0][i];
+    let q = SVector::<f64, N>::from_fn(|i, _| at_rest(i));
+    let motion = SVector::from_fn(|i, _| {
+        if i % 3 == 2 {
+            0.0
+        } else {
+            (i as f64 + 0.4).sin()
+        }
+    });
+    let found = energy.stress_stiffness(0, &q, &motion).unwrap();
+    // Third derivatives are of the order of one: the error of the difference is about the square of the step.
+    let step = 1e-5;
+    let hessian = |s: f64| energy.hessian(0, &(q + motion * s)).hessian;
+    let change = (hessian(step) - hessian(-step)) / (2.0 * step);
+    let upright = (0..N * N)
+        .map(|k| (k / N, k % N))
+        .filter(|(i, j)| i % 3 == 2 && j % 3 == 2);
+    let (mut error, mut size) = (0.0f64, 0.0f64);
+    for (i, j) in upright {
+        error = error.max((found[(i, j)] - change[(i, j)]).abs());
+        size = size.max(change[(i, j)].abs());
+    }
+    error / size
+}
+
+#[test]
+fn stresses_of_a_motion_stiffen_as_the_hessian_changes() {
+    let positions = [[0.0, 0.0, 0.0], [1.0, 0.2, 0.0], [0.3, 0.9, 0.0]].map(Vec3::from);
+    let mesh = TriMesh::new(3, vec![[0, 1, 2]]).unwrap();
+    let rest = Surface::from_mesh(mesh, positions.to_vec()).unwrap();
+    let frames = rest_frames(&rest).unwrap();
+    let section = Homogeneous::uniform(StVenantKirchhoff::new(YOUNG, 0.4), THICKNESS, 1);
+    let given = DiscreteStiffness::default();
+    let errors = [
+        stress_stiffness_error(&EdgeLengths::new(
+            &rest.mesh,
+            Dof(0),
+            &frames,
+            &section,
+            given,
+        )),
+        stress_stiffness_error(&FaceAreas::new(
+            &rest.mesh,
+            Dof(0),
+            &frames,
+            &section,
+            given,
+        )),
+        stress_stiffness_error(&Membrane::new(&rest.mesh, Dof(0), frames.clone(), section)),
+    ];
+    for error in errors {
+        assert!(error < 1e-8, "{errors:?}");
+    }
 }
