@@ -355,7 +355,7 @@ pub(crate) struct LateralBucklingArguments {
     /// Loads Γ* = 12 (1 − ν²) ρ g L³ / (E h²), growing
     #[arg(long, value_delimiter = ',', default_value = "10,12.5,15,17.5,20,22.5,25,27.5,30,32.5,35,37.5,40", value_parser = parse_load)]
     pub(crate) loads: Vec<f64>,
-    /// Edges along the plate; 100 is the mesh "Res++" of Romero et al.
+    /// Edges along the plate; 100 is the mesh "Res++" of Romero et al., which takes most of an hour; 30 takes a minute
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u16).range(4..=1000))]
     pub(crate) cells: u16,
     /// Draw the curves into this folder, as SVG and PNG
