@@ -82,37 +82,11 @@ fn materials_json() -> Value {
 
 /// Lists the bending models and the membranes.
 pub(crate) fn models(arguments: &CatalogueArguments) -> Result<(), Failure> {
-    let default = BendingModel::default();
     if arguments.json {
-        let all = BendingModel::ALL.map(|model| {
-            let info = model.info();
-            json!({
-                "name": info.name,
-                "what": info.what,
-                "unknowns": info.unknowns.name(),
-                "source": (!info.source.is_empty()).then_some(info.source),
-            })
-        });
-        let membranes = MembraneModel::ALL.map(|model| {
-            let info = model.info();
-            json!({
-                "name": info.name,
-                "what": info.what,
-                "keys": info.keys,
-                "source": info.source,
-            })
-        });
-        say!(
-            "{}",
-            json!({
-                "models": all,
-                "default": default.info().name,
-                "membranes": membranes,
-                "default_membrane": MembraneModel::default().info().name,
-            })
-        );
+        say!("{}", models_json());
         return Ok(());
     }
+    let default = BendingModel::default();
     say!("model     unknowns          what it is; source");
     for model in BendingModel::ALL {
         let info = model.info();
@@ -146,6 +120,33 @@ pub(crate) fn models(arguments: &CatalogueArguments) -> Result<(), Failure> {
          hinges, stand in its table discrete_shells. Sources: docs/references.bib"
     );
     Ok(())
+}
+
+fn models_json() -> Value {
+    let all = BendingModel::ALL.map(|model| {
+        let info = model.info();
+        json!({
+            "name": info.name,
+            "what": info.what,
+            "unknowns": info.unknowns.name(),
+            "source": (!info.source.is_empty()).then_some(info.source),
+        })
+    });
+    let membranes = MembraneModel::ALL.map(|model| {
+        let info = model.info();
+        json!({
+            "name": info.name,
+            "what": info.what,
+            "keys": info.keys,
+            "source": info.source,
+        })
+    });
+    json!({
+        "models": all,
+        "default": BendingModel::default().info().name,
+        "membranes": membranes,
+        "default_membrane": MembraneModel::default().info().name,
+    })
 }
 
 /// Prints the JSON Schema of scene files.

@@ -2,7 +2,7 @@
 
 use super::arc_length::ArcLengthError;
 use super::clamps::Clamps;
-use super::composition::CompositionError;
+use super::composition_error::CompositionError;
 use super::elastic::{Elastic, rest_surface};
 use super::loads::loads;
 use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell};

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::assemble::{BuildError, Unknowns, write_points};
-use super::composition::{Composed, CompositionError};
+use super::composition::Composed;
+use super::composition_error::CompositionError;
 use super::damping::dampers;
 use super::model::{BendingModel, MembraneModel, Model, Shell};
 use super::position_bending::PositionBending;

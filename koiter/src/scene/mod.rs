@@ -9,6 +9,7 @@ mod assemble;
 mod bending_models;
 mod clamps;
 mod composition;
+mod composition_error;
 mod display;
 mod elastic;
 mod fingerprint;
@@ -64,7 +65,7 @@ pub use self::{
     arc_length::ArcLengthError,
     assemble::BuildError,
     bending_models::BendingModelInfo,
-    composition::CompositionError,
+    composition_error::CompositionError,
     display::PartTopology,
     free_parts::FreePart,
     holds::Anchor,

@@ -2,7 +2,7 @@
 
 use crate::Vec3;
 use crate::material::{Layer, presets};
-use crate::scene::composition::CompositionError;
+use crate::scene::composition_error::CompositionError;
 use crate::scene::error::{SceneError, SceneErrorKind as Kind};
 use crate::scene::face_file::FaceFile;
 use crate::scene::material_models::MaterialModel;

@@ -15,7 +15,7 @@ pub use refinement::{Refinement, Trend};
 use std::ops::Range;
 
 use super::assemble::{BuildError, Unknowns, write_points};
-use super::composition::CompositionError;
+use super::composition_error::CompositionError;
 use super::elastic::Elastic;
 use super::model::{
     BendingModel, Composition, ContactOptions, IntegratorKind, Model, Shell, SolverOptions,

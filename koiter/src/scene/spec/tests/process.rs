@@ -11,7 +11,7 @@ fn with(bending: &str, process: &str) -> Result<SceneFile, SceneError> {
 
 /// Kind and path of the mistake.
 fn mistake_of(bending: &str, process: &str) -> (Kind, String) {
-    let error = with(bending, process).err().expect(process);
+    let error = with(bending, process).expect_err(process);
     (error.kind, error.path)
 }
 
