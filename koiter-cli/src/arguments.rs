@@ -205,7 +205,8 @@ pub(crate) struct RenderArguments {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     pub(crate) size: (u32, u32),
-    /// Frames a second of a film [default: real time, at most 30; 30 where frames are uneven in time]
+    /// Frames a second of a film [default: real time, at most 30; 30 where frames are uneven in time; every frame where all
+    /// is over in two seconds]
     #[arg(long, value_name = "FPS", allow_negative_numbers = true)]
     pub(crate) fps: Option<f64>,
     /// Draw the edges of the triangles

@@ -5,11 +5,13 @@ const MAX_FPS: f64 = 30.0;
 /// Where most intervals differ by more than this factor, as in phases of other steps, a film in real time would leave out
 /// most of what is fast: it shows one frame after the other.
 const EVEN: f64 = 1.5;
+/// What is over in less than this [s] is shown slowly, without leaving out frames.
+const SHORT: f64 = 2.0;
 /// Decimals of the times of frames.
 const DECIMALS: std::ops::RangeInclusive<usize> = 2..=6;
 
 /// Every how many frames one is shown, and how many a second: real time with at most so many frames where the times of
-/// frames [s] are even, else all frames, as far as they are not more.
+/// frames [s] are even and the film is not short, else all frames, as far as they are not more.
 pub(super) fn pace(times: &[f64], max_frames: usize) -> (usize, f64) {
     let count = times.len();
     if count < 2 {
@@ -25,7 +27,10 @@ pub(super) fn pace(times: &[f64], max_frames: usize) -> (usize, f64) {
     if intervals[intervals.len() - 1 - tenth] > EVEN * intervals[tenth] {
         return (for_count, MAX_FPS);
     }
-    let for_pace = (1.0 / (mean * MAX_FPS) - 1e-9).ceil() as usize;
+    let for_pace = match times[count - 1] - times[0] < SHORT {
+        true => 1,
+        false => (1.0 / (mean * MAX_FPS) - 1e-9).ceil() as usize,
+    };
     let stride = for_pace.max(for_count).clamp(1, count);
     (stride, (1.0 / (mean * stride as f64)).clamp(1.0, MAX_FPS))
 }
@@ -58,7 +63,7 @@ mod tests {
     #[test]
     fn even_frames_are_shown_in_real_time() {
         assert_eq!(pace(&even(51, 0.04), usize::MAX), (1, 25.0));
-        assert_eq!(pace(&even(101, 0.01), usize::MAX), (4, 25.0));
+        assert_eq!(pace(&even(401, 0.01), usize::MAX), (4, 25.0));
         assert_eq!(pace(&even(301, 0.04), 150).0, 3);
         // The last frame may come early.
         let mut times = even(51, 0.04);
@@ -75,6 +80,13 @@ mod tests {
         times.extend((1..=58).map(|k| 1.44 + 8e-4 * f64::from(k)));
         assert_eq!(pace(&times, usize::MAX), (1, MAX_FPS));
         assert_eq!(pace(&times, 50), (2, MAX_FPS));
+    }
+
+    #[test]
+    fn what_is_over_soon_is_shown_slowly_and_never_faster_than_it_is() {
+        assert_eq!(pace(&even(101, 5e-3), usize::MAX), (1, MAX_FPS));
+        assert_eq!(pace(&even(11, 0.1), usize::MAX).0, 1);
+        assert!((pace(&even(11, 0.1), usize::MAX).1 - 10.0).abs() < 1e-9);
     }
 
     #[test]
