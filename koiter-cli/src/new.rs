@@ -140,12 +140,24 @@ mod tests {
         let text = with_all_keys(&text_of(Template::Drape));
         let schema = koiter::scene::json_schema();
         let tables = [
-            // Loads and planes of symmetry are for engineers: the scenes rolled-strip and hinged-roof show them.
-            (&schema["properties"], &["variants", "load", "symmetry"][..]),
+            // Loads and planes of symmetry are for engineers: the scenes rolled-strip and hinged-roof show them. Processes
+            // have a page of their own.
+            (
+                &schema["properties"],
+                &["variants", "load", "symmetry", "process"][..],
+            ),
             // Names for shapes that are not the sheet's start, and for experts.
             (
                 &schema["$defs"]["ShellSpec"]["properties"],
-                &["rest_mesh", "rest_stretch", "rest_curvature", "faces"],
+                &[
+                    "rest_mesh",
+                    "rest_stretch",
+                    "rest_curvature",
+                    "faces",
+                    "membrane",
+                    "discrete_shells",
+                    "damping",
+                ],
             ),
             (&schema["$defs"]["ConstraintSpec"]["properties"], &[]),
             (&schema["$defs"]["ContactSpec"]["properties"], &["kappa"]),

@@ -296,7 +296,14 @@ fn bad_directors_are_refused_with_their_place() {
 fn sizes_that_numbers_do_not_hold_are_refused_and_energies_that_are_none_have_a_reason() {
     let folder = Folder::new();
     for scale in ["e160", "e-170"] {
-        let scaled = TENT.replace("0.5 0.5 0.2", &format!("0.5{scale} 0.5{scale} 0.2{scale}"));
+        let lines = TENT.lines().map(|line| match line.split_once(' ') {
+            Some(("v", numbers)) => {
+                let numbers = numbers.split(' ').map(|number| format!("{number}{scale}"));
+                format!("v {}\n", numbers.collect::<Vec<_>>().join(" "))
+            }
+            _ => format!("{line}\n"),
+        });
+        let scaled: String = lines.collect();
         let mesh = folder.write("huge.obj", &scaled);
         let said = refused(&[&["energy", "--deformed", &mesh][..], &SHELL].concat());
         assert!(
