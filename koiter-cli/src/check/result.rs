@@ -39,6 +39,8 @@ struct Row {
     enclosed: usize,
     collapsed_faces: usize,
     folded_edges: usize,
+    /// With dihedral angles below 30°: no fault.
+    sharp_edges: usize,
     smallest_area_ratio: f64,
     smallest_edge_ratio: f64,
     /// [rad]
@@ -128,7 +130,7 @@ impl Report {
 
     fn print(&self) {
         say!(
-            "{:>6} {:>10} {:>9} {:>9} {:>8} {:>9} {:>7} {:>10} {:>10} {:>9}",
+            "{:>6} {:>10} {:>9} {:>9} {:>8} {:>9} {:>7} {:>10} {:>10} {:>9} {:>6}",
             "frame",
             "time [s]",
             "crossings",
@@ -138,7 +140,8 @@ impl Report {
             "folded",
             "least area",
             "edge",
-            "fold [°]"
+            "fold [°]",
+            "<30°"
         );
         let shown = |row: &&Row| self.frames.len() <= MANY_FRAMES || !row.is_clean();
         for row in self.frames.iter().filter(shown) {
@@ -150,13 +153,19 @@ impl Report {
         let least =
             |value: fn(&Row) -> f64| self.frames.iter().map(value).fold(f64::INFINITY, f64::min);
         say!(
-            "{} frames of {} triangles; over the {}, least area {:.4}, least edge {:.4}; sharpest fold {:.2}°",
+            "{} frames of {} triangles; over the {}, least area {:.4}, least edge {:.4}; sharpest fold {:.2}°, at most {} \
+             edges below 30°",
             self.frames.len(),
             self.faces,
             self.compared_with,
             least(|row| row.smallest_area_ratio),
             least(|row| row.smallest_edge_ratio),
-            least(|row| row.smallest_dihedral_angle).to_degrees()
+            least(|row| row.smallest_dihedral_angle).to_degrees(),
+            self.frames
+                .iter()
+                .map(|row| row.sharp_edges)
+                .max()
+                .unwrap_or(0)
         );
         if self.clean {
             say!("nothing intersects, nothing is collapsed");
@@ -193,6 +202,7 @@ impl Row {
             enclosed: found.enclosed.len(),
             collapsed_faces: found.collapsed.len(),
             folded_edges: found.folded.len(),
+            sharp_edges: found.sharp,
             smallest_area_ratio: found.area_ratio.value,
             smallest_edge_ratio: found.edge_ratio.value,
             smallest_dihedral_angle: found.dihedral_angle.value,
@@ -226,7 +236,7 @@ impl Row {
             return;
         };
         say!(
-            "{:>6} {time:>10.4} {:>9} {:>9} {:>8} {:>9} {:>7} {:>10.4} {:>10.4} {:>9.2}",
+            "{:>6} {time:>10.4} {:>9} {:>9} {:>8} {:>9} {:>7} {:>10.4} {:>10.4} {:>9.2} {:>6}",
             self.frame,
             self.crossings,
             self.penetrations,
@@ -235,7 +245,8 @@ impl Row {
             self.folded_edges,
             self.smallest_area_ratio,
             self.smallest_edge_ratio,
-            self.smallest_dihedral_angle.to_degrees()
+            self.smallest_dihedral_angle.to_degrees(),
+            self.sharp_edges
         );
         for finding in &self.findings {
             say!("       {finding}");

@@ -33,6 +33,10 @@ pub const COLLAPSED: f64 = 0.01;
 /// millionth of their height, which no thickness that contact keeps apart allows.
 pub const FOLDED: f64 = 1e-6;
 
+/// An edge whose faces meet at less than this angle [rad], 30°, is sharp: where a model of bending lets folds close, there are
+/// many. No fault.
+pub const SHARP: f64 = std::f64::consts::FRAC_PI_6;
+
 /// An edge that meets a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Crossing {
@@ -75,6 +79,8 @@ pub struct FrameAudit {
     pub collapsed: Vec<u32>,
     /// Edges whose faces meet at less than [`FOLDED`].
     pub folded: Vec<[u32; 2]>,
+    /// Number of edges of shells whose faces meet at less than [`SHARP`].
+    pub sharp: usize,
     /// The smallest area of a face of a shell over its rest area, and the face.
     pub area_ratio: Smallest,
     /// The smallest length of an edge of a shell over its rest length, and a face it belongs to.

@@ -1,7 +1,7 @@
 //! Areas, lengths and dihedral angles of shells, relative to what they are at rest.
 
 use super::bodies::{RestFace, Topology};
-use super::{COLLAPSED, FOLDED, FrameAudit};
+use super::{COLLAPSED, FOLDED, FrameAudit, SHARP};
 use crate::Vec3;
 
 /// The smallest of some values, and the face where it is.
@@ -88,6 +88,7 @@ impl Shape {
             if value < FOLDED {
                 found.folded.push(edge.vertices);
             }
+            found.sharp += usize::from(value < SHARP);
             found.dihedral_angle.take(Smallest { value, face: first });
         }
         found

@@ -131,7 +131,11 @@ fn collapsed_faces_and_folded_edges_are_found() {
         ([[0, 3]].as_slice(), 0)
     );
     x[2] += v(0.0, 0.0, 1e-3);
-    assert!(audit.frame(&x).folded.is_empty());
+    let found = audit.frame(&x);
+    assert!(found.folded.is_empty() && found.sharp == 1);
+    // The corner is 1/√2 from the diagonal: upright, and at an angle with a tangent of 1.
+    x[2] = v(0.5, 0.5, 0.5f64.sqrt());
+    assert_eq!(audit.frame(&x).sharp, 0);
 }
 
 #[test]
