@@ -2,6 +2,8 @@
 
 mod result;
 
+pub(crate) use result::bodies;
+
 use crate::output::say;
 use koiter::scene::model::{IntegratorKind, Load, Model, Shell};
 use koiter::scene::{LoadTotal, Scene, readable_bytes};

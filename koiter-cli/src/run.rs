@@ -7,7 +7,7 @@ mod record;
 mod recorder;
 mod start;
 
-pub(crate) use start::start;
+pub(crate) use start::{parts, start};
 
 use crate::output::say;
 use std::path::{Path, PathBuf};

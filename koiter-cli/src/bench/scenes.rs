@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use indicatif::ProgressBar;
-use koiter::audit::{Audit, Body};
+use koiter::audit::Audit;
 use koiter::mesh::Surface;
 use koiter::scene::measure::Measurement;
 use koiter::scene::model::BendingModel;
@@ -17,7 +17,9 @@ use super::models::hessian_nonzeros;
 use super::published::{number, rows};
 use super::table::{Cell, Table};
 use crate::arguments::{SceneArguments, ScenesArguments, Variation, bending_models};
+use crate::check::bodies;
 use crate::failure::Failure;
+use crate::run::parts;
 use crate::scene_source::load_silently;
 
 /// Parts of a step that are contact.
@@ -231,26 +233,9 @@ fn variation_name(variation: Variation) -> &'static str {
 
 /// What tests the frames of a simulation, and the triangles of all that is shown.
 fn audit(simulation: &Simulation) -> (Audit, usize) {
-    let (mut bodies, mut faces) = (Vec::new(), Vec::new());
-    let mut first_vertex = 0;
-    let model = simulation.model();
-    let solids = (model.shells.iter().map(|_| None))
-        .chain(model.obstacles.iter().map(|obstacle| obstacle.solid()));
-    for (part, solid) in simulation.parts().iter().zip(solids) {
-        let first_face = faces.len();
-        let offset = first_vertex as u32;
-        faces.extend((part.faces.iter()).map(|face| face.map(|vertex| vertex + offset)));
-        bodies.push(Body {
-            name: part.name.clone(),
-            is_obstacle: part.is_obstacle,
-            vertices: first_vertex..first_vertex + part.num_vertices,
-            faces: first_face..faces.len(),
-            solid,
-        });
-        first_vertex += part.num_vertices;
-    }
+    let (parts, faces) = parts(simulation);
     let positions = simulation.display_positions();
-    let audit = Audit::new(bodies, &faces, &simulation.rest_faces(), &positions);
+    let audit = Audit::new(bodies(&parts), &faces, &simulation.rest_faces(), &positions);
     (audit, faces.len())
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use indicatif::ProgressBar;
 use koiter::audit::{Audit, Body, Crossing, Enclosed, FrameAudit, Penetration, RestFace};
-use koiter::io::result::{Frame, PartKind, ResultReader};
+use koiter::io::result::{Frame, Part, PartKind, ResultReader};
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -175,20 +175,26 @@ impl Report {
 
 /// Bodies, solids and rest shape of a result; `first` is the first frame that can be read.
 fn prepare(reader: &ResultReader, rest: Option<&[RestFace]>, first: &Frame) -> Audit {
-    let bodies = reader.manifest().parts.iter().map(|part| Body {
-        name: part.name.clone(),
-        is_obstacle: part.kind == PartKind::Obstacle,
-        vertices: part.vertices.clone(),
-        faces: part.faces.clone(),
-        solid: part.solid.clone(),
-    });
     let corners = |face: &[u32; 3]| face.map(|v| first.positions[v as usize]);
     let as_it_is = |face: &[u32; 3]| RestFace::from_corners(&corners(face));
     let rest = match rest {
         Some(rest) => rest.to_vec(),
         None => reader.faces().iter().map(as_it_is).collect(),
     };
-    Audit::new(bodies.collect(), reader.faces(), &rest, &first.positions)
+    let bodies = bodies(&reader.manifest().parts);
+    Audit::new(bodies, reader.faces(), &rest, &first.positions)
+}
+
+/// What an audit knows of the parts of a result.
+pub(crate) fn bodies(parts: &[Part]) -> Vec<Body> {
+    let body = |part: &Part| Body {
+        name: part.name.clone(),
+        is_obstacle: part.kind == PartKind::Obstacle,
+        vertices: part.vertices.clone(),
+        faces: part.faces.clone(),
+        solid: part.solid.clone(),
+    };
+    parts.iter().map(body).collect()
 }
 
 impl Row {

@@ -28,7 +28,7 @@ pub(crate) fn start(model: &Model, debug_mesh: Option<&Path>) -> Result<Simulati
 }
 
 /// Parts and faces of everything that is shown.
-pub(super) fn manifest(loaded: &LoadedScene, simulation: &Simulation) -> (Manifest, Vec<[u32; 3]>) {
+pub(crate) fn parts(simulation: &Simulation) -> (Vec<Part>, Vec<[u32; 3]>) {
     let (mut parts, mut faces) = (Vec::new(), Vec::new());
     let model = simulation.model();
     let solids = model.shells.iter().map(|_| None);
@@ -56,6 +56,12 @@ pub(super) fn manifest(loaded: &LoadedScene, simulation: &Simulation) -> (Manife
         });
         first_vertex += part.num_vertices;
     }
+    (parts, faces)
+}
+
+/// The result folder's description of a simulation, and its faces.
+pub(super) fn manifest(loaded: &LoadedScene, simulation: &Simulation) -> (Manifest, Vec<[u32; 3]>) {
+    let (parts, faces) = parts(simulation);
     let manifest = Manifest {
         title: loaded.scene.title.clone(),
         scene_text: loaded.text.clone(),
