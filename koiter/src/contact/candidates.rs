@@ -43,6 +43,11 @@ impl SweptTree {
     }
 }
 
+/// The mean of motions: seen by whoever moves along with it, what flies as a whole sweeps little.
+fn mean(motions: &[Vec3]) -> Vec3 {
+    motions.iter().sum::<Vec3>() / motions.len().max(1) as f64
+}
+
 impl Candidates {
     /// What `check` makes of all pairs whose surfaces, by their boxes, come within `reach` of each other anywhere between
     /// `x` and `x + dx`; vertex–face pairs, then edge–edge pairs. `None` if there are too many.
@@ -54,6 +59,7 @@ impl Candidates {
         dx: Option<&[Vec3]>,
         check: impl Fn(Pair) -> Option<T> + Sync + Send,
     ) -> Option<Vec<T>> {
+        let shared = dx.map_or(Vec3::zeros(), mean);
         let swept = |vertices: &[u32]| {
             let margin = mesh.offset(vertices[0]) + 0.5 * reach;
             let at = |v: &u32| x[*v as usize];
@@ -62,7 +68,7 @@ impl Candidates {
                 Some(dx) => Aabb::around(
                     vertices
                         .iter()
-                        .flat_map(|v| [at(v), at(v) + dx[*v as usize]]),
+                        .flat_map(|v| [at(v), at(v) + (dx[*v as usize] - shared)]),
                     margin,
                 ),
             }
