@@ -5,6 +5,7 @@ mod modes;
 mod scenes;
 mod studies;
 mod validation;
+mod viewing;
 
 pub(crate) use aids::{
     CatalogueArguments, CompletionsArguments, Figure, ManArguments, NewArguments, PlotArguments,
@@ -18,6 +19,7 @@ pub(crate) use studies::{
     bending_models,
 };
 pub(crate) use validation::ValidateArguments;
+pub(crate) use viewing::ViewArguments;
 
 use std::path::PathBuf;
 
@@ -49,6 +51,8 @@ pub(crate) enum Verb {
     Run(RunArguments),
     /// Reads and checks a scene, or every frame of a result; runs nothing.
     Check(CheckArguments),
+    /// Opens results, meshes or a run that goes on in the browser: plays, compares, plots.
+    View(ViewArguments),
     /// Makes a picture or a film of a result.
     Render(RenderArguments),
     /// Writes a result in a format that other programs open.
@@ -105,7 +109,8 @@ summary.json; a result that is there already is replaced, but not an interrupted
 
 checkpoint.bin is where --resume goes on: written after a step once output.checkpoint_seconds (10 s) have gone by,
 at the end, and on Ctrl-C or SIGTERM, which end the run after the present step. A second Ctrl-C ends it at once,
-with the last checkpoint whole. --resume refuses a checkpoint of another scene or version; title, time.end,
+with the last checkpoint whole. The word pause or stop in the file request.txt of the result folder does the same from
+elsewhere: pause until the file is gone, or end after the present step. --resume refuses a checkpoint of another scene or version; title, time.end,
 output.camera, output.color and output.checkpoint_seconds may differ.")]
 pub(crate) struct RunArguments {
     #[command(flatten)]
@@ -224,6 +229,7 @@ Examples:
   koiter export results/sphere-drape --to obj -o end.obj        the last frame
   koiter export results/sphere-drape --to ply -o k40.ply --frame 40
   koiter export results/sphere-drape --to glb -o drape.glb      a film, for browsers and Blender
+  koiter export results/sphere-drape --to html -o drape.html    the viewer with the result inside, to be sent
   koiter export results/sphere-drape --to glb -o strain.glb --frame 40 --color strain")]
 pub(crate) struct ExportArguments {
     /// Result folder
@@ -235,7 +241,7 @@ pub(crate) struct ExportArguments {
     /// File to write; for a vtu series, the .pvd that lists it
     #[arg(short, long, value_name = "PATH")]
     pub(crate) output: PathBuf,
-    /// Frame, from 0 [default: the last; vtu and glb: all]
+    /// Frame, from 0 [default: the last; vtu, glb and html: all]
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub(crate) frame: Option<usize>,
     /// Colour a frame of a glb by a field: strain, bending_energy_density or mean_curvature
@@ -256,6 +262,8 @@ pub(crate) enum ExportFormat {
     Vtu,
     /// glTF 2.0 in one file; a film unless --frame is given
     Glb,
+    /// The viewer with the result inside: one file that opens anywhere
+    Html,
 }
 
 fn parse_count(text: &str) -> Result<usize, String> {

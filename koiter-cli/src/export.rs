@@ -6,12 +6,14 @@ use std::path::Path;
 
 use koiter::io::result::ResultReader;
 use koiter::io::write::{MeshWithFields, write_obj, write_ply, write_vtu, write_vtu_series};
+use koiter::io::write_atomically;
 use serde_json::json;
 
 use crate::arguments::{ExportArguments, ExportFormat};
 use crate::failure::Failure;
 use crate::output::say;
 use crate::output_path;
+use crate::view;
 
 /// Exports a frame, or all as a VTK series.
 pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
@@ -36,6 +38,7 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         (ExportFormat::Vtu, true) => "pvd",
         (ExportFormat::Vtu, false) => "vtu",
         (ExportFormat::Glb, _) => "glb",
+        (ExportFormat::Html, _) => "html",
     };
     output_path::check(&arguments.output)?;
     let given = arguments
@@ -58,6 +61,8 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         write_vtu_series(&reader, &output, |_| {}).map_err(Failure::run)?;
     } else if arguments.to == ExportFormat::Glb {
         glb::export(&reader, arguments, &output)?;
+    } else if arguments.to == ExportFormat::Html {
+        write_html(&reader, arguments, &output)?;
     } else {
         let frame = reader
             .frame(arguments.frame.unwrap_or(last))
@@ -74,12 +79,27 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     Ok(())
 }
 
+fn write_html(
+    reader: &ResultReader,
+    arguments: &ExportArguments,
+    output: &Path,
+) -> Result<(), Failure> {
+    let page = view::bundled_page()?;
+    let frames = match arguments.frame {
+        Some(frame) => vec![frame],
+        None => view::html_frames(reader),
+    };
+    let html = view::html(&arguments.result, &page, &frames)?;
+    write_atomically(output, html.as_bytes())
+        .map_err(|error| Failure::run(format!("cannot write {}: {error}", output.display())))
+}
+
 fn report(arguments: &ExportArguments, reader: &ResultReader, output: &Path) {
     if !arguments.json {
         say!("made: {}", output.display());
         return;
     }
-    let can_hold_all = matches!(arguments.to, ExportFormat::Vtu | ExportFormat::Glb);
+    let can_hold_all = !matches!(arguments.to, ExportFormat::Obj | ExportFormat::Ply);
     let is_all = can_hold_all && arguments.frame.is_none();
     let manifest = reader.manifest();
     let json = json!({

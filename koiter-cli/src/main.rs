@@ -28,6 +28,7 @@ mod render;
 mod run;
 mod scene_source;
 mod validate;
+mod view;
 
 use std::process::ExitCode;
 
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
     let result = match arguments.verb {
         Verb::Run(arguments) => run::run(&arguments),
         Verb::Check(arguments) => check::check(&arguments),
+        Verb::View(arguments) => view::view(&arguments),
         Verb::Render(arguments) => render::render(&arguments),
         Verb::Export(arguments) => export::export(&arguments),
         Verb::Plot(arguments) => plot::plot(&arguments),

@@ -2,6 +2,7 @@
 
 mod account;
 mod beginning;
+mod control;
 mod progress;
 mod record;
 mod recorder;
@@ -26,6 +27,7 @@ use crate::pictures;
 use crate::scene_source::load;
 use account::Account;
 use beginning::Beginning;
+use control::Control;
 use progress::Progress;
 use recorder::Recorder;
 
@@ -67,13 +69,14 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         }
     };
     let interrupt = Interrupt::watch();
+    let control = Control::new(&folder, &interrupt, arguments.quiet);
     let mut progress = Progress::new(num_steps, simulation.step_count(), arguments.quiet);
     let end = advance(
         simulation,
         num_steps,
         &mut recorder,
         &mut progress,
-        &interrupt,
+        &control,
     );
     progress.finish();
     let summary_written = recorder.write_summary();
@@ -185,13 +188,14 @@ fn advance(
     num_steps: usize,
     recorder: &mut Recorder<'_>,
     progress: &mut Progress,
-    interrupt: &Interrupt,
+    control: &Control<'_>,
 ) -> Result<(), Failure> {
     let mut simulation = simulation;
     for step in simulation.step_count() + 1..=num_steps {
         if simulation.has_ended() {
             break;
         }
+        control.wait_while_paused();
         let timeline = &recorder.scene.timeline;
         let report = match simulation.step(timeline.dt(step)) {
             Ok(report) => StepReport {
@@ -203,7 +207,7 @@ fn advance(
                 return Err(Failure::run(error));
             }
         };
-        let stop = interrupt.is_asked();
+        let stop = control.is_to_end();
         if simulation.has_ended() {
             // A path is over where its last load is reached, however many steps were planned.
             recorder.summary.planned_steps = step;
@@ -213,6 +217,7 @@ fn advance(
         progress.show(&report);
         if stop {
             recorder.summary.interrupted = !ended;
+            control.obeyed();
             break;
         }
     }

@@ -8,6 +8,7 @@
 //! stats.jsonl       one JSON object a step
 //! checkpoint.bin    where an interrupted run goes on
 //! summary.json      one JSON object, at the end of the run
+//! request.txt       what someone asks of the run: pause or stop
 //! ```
 //!
 //! Vertices and faces of all parts are numbered through; a [`Part`] says which ranges are its own. Numbers in the
@@ -18,8 +19,10 @@ mod checkpoint;
 mod error;
 mod folder_lock;
 mod frame;
+mod frame_probe;
 mod manifest;
 mod reader;
+mod request;
 mod rest_file;
 mod topology_file;
 mod writer;
@@ -28,8 +31,10 @@ pub use checkpoint::{Checkpoint, CheckpointError, Totals};
 pub use error::ResultError;
 pub use folder_lock::FolderLock;
 pub use frame::{Field, Frame, FrameInfo};
+pub use frame_probe::{Element, FrameProbe};
 pub use manifest::{Manifest, Part, PartKind, UpAxis};
 pub use reader::{ResultReader, decode_stats};
+pub use request::RunRequest;
 pub use topology_file::decode_topology;
 pub use writer::{ResultWriter, keep_lines};
 
@@ -42,6 +47,7 @@ const FRAMES: &str = "frames";
 const STATS: &str = "stats.jsonl";
 const CHECKPOINT: &str = "checkpoint.bin";
 const SUMMARY: &str = "summary.json";
+const REQUEST: &str = "request.txt";
 
 fn frame_path(folder: &Path, index: usize) -> PathBuf {
     folder.join(FRAMES).join(format!("{index:05}.bin"))

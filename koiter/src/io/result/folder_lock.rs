@@ -39,26 +39,58 @@ impl FolderLock {
         Self::take(folder)
     }
 
+    /// Whether a run writes to the folder now; `None` where that cannot be told.
+    pub fn is_held(folder: &Path) -> Option<bool> {
+        is_held(folder)
+    }
+
     /// The folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 }
 
+/// Who asks whether a folder is in use holds it for a moment; a run that begins in this moment tries again.
+#[cfg(unix)]
+const ATTEMPTS: usize = 5;
+
 #[cfg(unix)]
 fn lock(folder: &Path) -> Result<Option<File>, ResultError> {
     let file = File::open(folder).map_err(while_trying("open", folder))?;
-    match file.try_lock() {
-        Ok(()) => Ok(Some(file)),
-        Err(TryLockError::WouldBlock) => Err(ResultError::InUse {
-            path: folder.to_path_buf(),
-        }),
-        // Some network file systems have no locks.
-        Err(TryLockError::Error(_)) => Ok(None),
+    for attempt in 1.. {
+        match file.try_lock() {
+            Ok(()) => break,
+            Err(TryLockError::WouldBlock) if attempt < ATTEMPTS => {
+                std::thread::sleep(std::time::Duration::from_millis(10));
+            }
+            Err(TryLockError::WouldBlock) => {
+                return Err(ResultError::InUse {
+                    path: folder.to_path_buf(),
+                });
+            }
+            // Some network file systems have no locks.
+            Err(TryLockError::Error(_)) => return Ok(None),
+        }
+    }
+    Ok(Some(file))
+}
+
+#[cfg(unix)]
+fn is_held(folder: &Path) -> Option<bool> {
+    match File::open(folder).ok()?.try_lock_shared() {
+        Ok(()) => Some(false),
+        Err(TryLockError::WouldBlock) => Some(true),
+        Err(TryLockError::Error(_)) => None,
     }
 }
 
 /// Elsewhere folders cannot be opened as files.
+#[cfg(not(unix))]
+fn is_held(_folder: &Path) -> Option<bool> {
+    None
+}
+
+/// As there.
 #[cfg(not(unix))]
 fn lock(_folder: &Path) -> Result<Option<File>, ResultError> {
     Ok(None)

@@ -53,12 +53,13 @@ pub struct FrameInfo {
     pub time: f64,
 }
 
-struct Header {
-    info: FrameInfo,
-    num_vertices: usize,
-    num_faces: usize,
-    num_vertex_fields: u32,
-    num_face_fields: u32,
+/// What stands before the positions.
+pub(super) struct Header {
+    pub(super) info: FrameInfo,
+    pub(super) num_vertices: usize,
+    pub(super) num_faces: usize,
+    pub(super) num_vertex_fields: u32,
+    pub(super) num_face_fields: u32,
 }
 
 impl Frame {
@@ -194,12 +195,17 @@ impl Frame {
 
     /// Step and time from the first [`HEADER_LENGTH`] bytes, without checking the rest.
     pub(super) fn decode_info(bytes: &[u8]) -> Result<FrameInfo, String> {
-        let mut reader = ByteReader::new(bytes, Endian::Little);
-        if reader.take(8) != Some(MAGIC) || reader.u32() != Some(VERSION) {
-            return Err("it does not start as a frame of this version does".to_string());
-        }
-        Ok(read_header(&mut reader)?.info)
+        Ok(decode_header(bytes)?.info)
     }
+}
+
+/// The header in the first [`HEADER_LENGTH`] bytes.
+pub(super) fn decode_header(bytes: &[u8]) -> Result<Header, String> {
+    let mut reader = ByteReader::new(bytes, Endian::Little);
+    if reader.take(8) != Some(MAGIC) || reader.u32() != Some(VERSION) {
+        return Err("it does not start as a frame of this version does".to_string());
+    }
+    read_header(&mut reader)
 }
 
 fn read_header(reader: &mut ByteReader) -> Result<Header, String> {

@@ -8,7 +8,9 @@ use super::error::{read_file, read_if_there, unreadable, while_trying};
 use super::frame::HEADER_LENGTH;
 use super::{
     FRAMES, Frame, FrameInfo, Manifest, REST, ResultError, STATS, SUMMARY, TOPOLOGY,
-    decode_topology, frame_path, rest_file,
+    decode_topology, frame_path,
+    frame_probe::{Element, FrameProbe, ProbeError, probe_frame},
+    rest_file,
 };
 use crate::audit::RestFace;
 use crate::io::bounded_read::open_regular;
@@ -20,6 +22,7 @@ pub struct ResultReader {
     manifest: Manifest,
     faces: Vec<[u32; 3]>,
     len: usize,
+    count: fn(&Path) -> Result<usize, ResultError>,
 }
 
 impl ResultReader {
@@ -37,13 +40,14 @@ impl ResultReader {
     /// # Errors
     /// As there, but for missing frames.
     pub fn open_with_gaps(folder: &Path) -> Result<Self, ResultError> {
-        let count = |folder: &Path| Ok(frame_indices(folder)?.last().map_or(0, |last| last + 1));
-        Self::open_with(folder, count)
+        Self::open_with(folder, |folder| {
+            Ok(frame_indices(folder)?.last().map_or(0, |last| last + 1))
+        })
     }
 
     fn open_with(
         folder: &Path,
-        count: impl FnOnce(&Path) -> Result<usize, ResultError>,
+        count: fn(&Path) -> Result<usize, ResultError>,
     ) -> Result<Self, ResultError> {
         let manifest = Manifest::read(folder)?;
         let path = folder.join(TOPOLOGY);
@@ -66,7 +70,13 @@ impl ResultReader {
             manifest,
             faces,
             len,
+            count,
         })
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// What the run was made of.
@@ -92,9 +102,9 @@ impl ResultReader {
     /// Counts the frames again: a run that goes on adds to them.
     ///
     /// # Errors
-    /// A missing frame, a refusal of the system.
+    /// A missing frame, unless the folder was opened with gaps; a refusal of the system.
     pub fn refresh(&mut self) -> Result<(), ResultError> {
-        self.len = count_frames(&self.folder)?;
+        self.len = (self.count)(&self.folder)?;
         Ok(())
     }
 
@@ -127,6 +137,24 @@ impl ResultReader {
             .and_then(|file| file.take(HEADER_LENGTH as u64).read_to_end(&mut bytes))
             .map_err(unreadable(&path))?;
         Frame::decode_info(&bytes).map_err(|reason| ResultError::Broken { path, reason })
+    }
+
+    /// One vertex or face of frame `index`, of which only these bytes are read: for its history over thousands of frames. The
+    /// checksum of the frame is not looked at.
+    ///
+    /// # Errors
+    /// No such frame, vertex or face, a file that is none, a refusal of the system.
+    pub fn probe(&self, index: usize, element: Element) -> Result<FrameProbe, ResultError> {
+        let path = self.existing_frame(index)?;
+        let counts = (self.manifest.num_vertices(), self.manifest.num_faces());
+        let mut file = open_regular(&path).map_err(unreadable(&path))?;
+        probe_frame(&mut file, counts, element).map_err(|error| match error {
+            ProbeError::Io(source) => unreadable(&path)(source),
+            ProbeError::Broken(reason) => ResultError::Broken {
+                path: path.clone(),
+                reason,
+            },
+        })
     }
 
     /// What every face is at rest, in the order of [`ResultReader::faces`]; `None` in results of versions that did not

@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::error::{read_if_there, while_trying};
 use super::{
-    CHECKPOINT, Checkpoint, FRAMES, FolderLock, Frame, MANIFEST, Manifest, REST, ResultError,
-    ResultReader, STATS, SUMMARY, TOPOLOGY, frame_path, rest_file, topology_file,
+    CHECKPOINT, Checkpoint, FRAMES, FolderLock, Frame, MANIFEST, Manifest, REQUEST, REST,
+    ResultError, ResultReader, STATS, SUMMARY, TOPOLOGY, frame_path, rest_file, topology_file,
 };
 use crate::audit::RestFace;
 use crate::io::write_atomically;
@@ -124,7 +124,9 @@ impl ResultWriter {
             let path = frame_path(folder, index);
             fs::remove_file(&path).map_err(while_trying("delete", &path))?;
         }
-        remove_if_there(&folder.join(SUMMARY))?;
+        for name in [SUMMARY, REQUEST] {
+            remove_if_there(&folder.join(name))?;
+        }
         // The scene may have got a later end.
         write_manifest(folder, manifest)?;
         Self::open_at(lock, manifest, frames)
@@ -266,7 +268,7 @@ fn check_is_ours(folder: &Path) -> Result<(), ResultError> {
 fn clear_old_result(folder: &Path) -> Result<(), ResultError> {
     // The summary first: without it nothing says that the run had ended. Then the checkpoint, since what follows it is
     // gone, and the topology: without it a half-cleared result is not taken for a whole one.
-    for name in [SUMMARY, CHECKPOINT, TOPOLOGY, REST, STATS, PROBES] {
+    for name in [SUMMARY, CHECKPOINT, TOPOLOGY, REST, STATS, PROBES, REQUEST] {
         remove_if_there(&folder.join(name))?;
     }
     let frames = folder.join(FRAMES);
