@@ -5,6 +5,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use koiter::Vec3;
+use koiter::energy::expression::{ElementKind, Names};
 use koiter::io::crc32;
 use koiter::io::read::MeshFormat;
 use koiter::io::result::{Checkpoint, Frame, Manifest, decode_stats, decode_topology};
@@ -24,6 +25,8 @@ pub enum Target {
     Off,
     /// A scene, to a checked model. Lines that begin with `#set ` are overrides.
     Scene,
+    /// The text of an energy, parsed.
+    Expression,
     /// `manifest.json` of a result.
     Manifest,
     /// `topology.bin` of a result.
@@ -38,12 +41,13 @@ pub enum Target {
 
 impl Target {
     /// All readers.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Obj,
         Self::Ply,
         Self::Stl,
         Self::Off,
         Self::Scene,
+        Self::Expression,
         Self::Manifest,
         Self::Topology,
         Self::Frame,
@@ -59,6 +63,7 @@ impl Target {
             Self::Stl => "stl",
             Self::Off => "off",
             Self::Scene => "scene",
+            Self::Expression => "expression",
             Self::Manifest => "manifest",
             Self::Topology => "topology",
             Self::Frame => "frame",
@@ -78,6 +83,7 @@ impl Target {
             Self::Stl => read_mesh(MeshFormat::Stl, bytes),
             Self::Off => read_mesh(MeshFormat::Off, bytes),
             Self::Scene => read_scene(bytes),
+            Self::Expression => read_expression(bytes),
             Self::Manifest => Manifest::decode(Path::new("result"), bytes)
                 .is_ok_and(|manifest| manifest.check(&[[0, 1, 2], [3, 4, 5]]).is_ok()),
             Self::Topology => with_checksum(bytes, |bytes| decode_topology(bytes).is_ok()),
@@ -101,6 +107,7 @@ impl Target {
             ],
             Self::Off => &["OFF", "COFF", "BINARY", "#", "\n"],
             Self::Scene => SCENE_WORDS,
+            Self::Expression => EXPRESSION_WORDS,
             Self::Manifest | Self::Stats => &[
                 "{", "}", "[", "]", "\"", ":", ",", "null", "\\u0000", "1e999",
             ],
@@ -136,11 +143,45 @@ const PLY_WORDS: &[&str] = &[
     "\n",
 ];
 
+const EXPRESSION_WORDS: &[&str] = &[
+    "(",
+    ")",
+    ",",
+    ";",
+    "=",
+    "+",
+    "-",
+    "*",
+    "/",
+    "^",
+    "u = ",
+    "u",
+    "area",
+    "vx",
+    "k",
+    "time",
+    "pi",
+    "sqrt(",
+    "atan2(",
+    "abs(",
+    "min(",
+    "smoothstep(",
+    "1e308",
+    "0",
+    ".5",
+    "β",
+    " ",
+];
+
 const SCENE_WORDS: &[&str] = &[
     "[[shell]]\n",
     "[[obstacle]]\n",
     "[[constraint]]\n",
     "[[probe]]\n",
+    "[[energy]]\n",
+    "density = ",
+    "on = \"face\"",
+    "parameters = {",
     "[variants.a]\n",
     "[variants.a.b]\n",
     "#set ",
@@ -283,6 +324,26 @@ fn read_scene(bytes: &[u8]) -> bool {
                     "{error}: its place is not in the text"
                 );
             }
+            false
+        }
+    }
+}
+
+fn read_expression(bytes: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(bytes);
+    let (quantities, parameters) = (ElementKind::Face.rate_names(), ["k".to_owned()]);
+    let names = Names {
+        quantities: &quantities,
+        parameters: &parameters,
+    };
+    match names.parse(&text) {
+        Ok(_) => true,
+        Err(error) => {
+            let end = text.chars().count() + 1;
+            assert!(
+                (1..=end).contains(&error.column),
+                "{error}: its place is not in the text"
+            );
             false
         }
     }

@@ -92,7 +92,7 @@ and others) complete its keys and mark mistakes.")]
 #[derive(Debug, Args)]
 #[command(after_help = "\
 SCENE is a scene.toml, a folder that holds one, or a scene that ships with Koiter:
-  sphere-drape, drape-n, cantilever, hanging-sheet, v-beam, rolled-strip, hinged-roof, lateral-buckling,
+  sphere-drape, drape-n, cantilever, hanging-sheet, flag-in-the-wind, v-beam, rolled-strip, hinged-roof, lateral-buckling,
   popper, pinned-drop, ball-crash, can-crush, cone-crush, twisted-cylinder, twisted-sheet, corrugated-collision,
   your-own-mesh
 
@@ -290,6 +290,7 @@ Examples:
   koiter bench solve --faces 40000 --repeats 5
   koiter bench contact --json
   koiter bench drape --n 35,70 --bending bac --threads 1
+  koiter bench explicit --threads 1
   koiter bench convergence --cases sphere --plot pictures
   koiter bench creased-vee --json
   koiter bench lateral-buckling --models bac --cells 50 --plot pictures")]
@@ -311,6 +312,8 @@ pub(crate) enum BenchSubject {
     Contact(SizeArguments),
     /// Whole steps of the scene drape-n
     Drape(DrapeArguments),
+    /// Explicit steps of Newmark's method with the hinges and the membrane of Discrete Shells
+    Explicit(ExplicitArguments),
     /// Whole runs of the contact-rich scenes, audited: "Better Bending", Table 7; and with other steps, gaps and axes
     Scenes(ScenesArguments),
     /// What each bending model costs: evaluations, and nonzeros of its Hessian
@@ -344,6 +347,26 @@ pub(crate) struct DrapeArguments {
     /// Steps of 20 ms
     #[arg(long, default_value_t = 40, allow_negative_numbers = true)]
     pub(crate) steps: usize,
+    /// Numbers of threads [default: one, and all cores]
+    #[arg(long, value_delimiter = ',')]
+    pub(crate) threads: Vec<usize>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  koiter bench explicit --threads 1
+  koiter bench explicit --faces 40000 --steps 400 --threads 1 --json")]
+pub(crate) struct ExplicitArguments {
+    /// Numbers of triangles, about
+    #[arg(long, value_delimiter = ',', default_value = "10000,40000", value_parser = parse_faces)]
+    pub(crate) faces: Vec<usize>,
+    /// Steps of a run
+    #[arg(long, default_value_t = 200, allow_negative_numbers = true, value_parser = parse_count)]
+    pub(crate) steps: usize,
+    /// Repetitions; the fastest counts
+    #[arg(long, default_value_t = 3, allow_negative_numbers = true, value_parser = parse_count)]
+    pub(crate) repeats: usize,
     /// Numbers of threads [default: one, and all cores]
     #[arg(long, value_delimiter = ',')]
     pub(crate) threads: Vec<usize>,

@@ -5,7 +5,7 @@ mod result;
 pub(crate) use result::bodies;
 
 use crate::output::say;
-use koiter::scene::model::{IntegratorKind, Load, Model, Shell};
+use koiter::scene::model::{ElementKind, IntegratorKind, Load, Model, Shell, TextEnergy};
 use koiter::scene::{LoadTotal, Scene, readable_bytes};
 use serde::Serialize;
 
@@ -23,7 +23,7 @@ struct Report {
     dofs: usize,
     hessian_nonzeros: usize,
     estimated_memory_bytes: u64,
-    energies: Vec<&'static str>,
+    energies: Vec<String>,
     steps: usize,
     /// Of the first step.
     dt: f64,
@@ -33,6 +33,8 @@ struct Report {
     obstacles: Vec<String>,
     constraints: usize,
     loads: Vec<LoadReport>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    expressions: Vec<ExpressionReport>,
     processes: Vec<ProcessReport>,
     probes: Vec<String>,
     warnings: Vec<String>,
@@ -67,6 +69,46 @@ struct ProcessReport {
     name: String,
     shell: String,
     what: String,
+}
+
+/// An energy that the scene writes.
+#[derive(Serialize)]
+struct ExpressionReport {
+    name: String,
+    shell: String,
+    on: ElementKind,
+    /// What its value is: an energy or a dissipation, of an element or by rest area or length.
+    is_dissipation: bool,
+    is_density: bool,
+    text: String,
+    #[serde(skip)]
+    words: String,
+}
+
+impl ExpressionReport {
+    fn new(model: &Model, energy: &TextEnergy) -> Self {
+        let value = energy.value;
+        let what = match value.is_dissipation {
+            true => "a dissipation",
+            false => "an energy",
+        };
+        let by = match value.is_density {
+            true => format!(" by {}", energy.on.measure()),
+            false => String::new(),
+        };
+        Self {
+            name: energy.name.clone(),
+            shell: model.shells[energy.shell].name.clone(),
+            on: energy.on,
+            is_dissipation: value.is_dissipation,
+            is_density: value.is_density,
+            text: energy.text.trim().to_owned(),
+            words: match energy.on {
+                ElementKind::Shell => format!("{what} of the whole shell"),
+                on => format!("{what}{by} of its {}", on.plural()),
+            },
+        }
+    }
 }
 
 /// A load at a factor of 1; of its totals the one that it has.
@@ -143,6 +185,9 @@ fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(),
     let loads = scene.model.loads.iter();
     let loads = loads.map(|load| LoadReport::new(&scene.model, load));
     let loads = loads.collect();
+    let expressions = scene.model.energies.iter();
+    let expressions = expressions.map(|energy| ExpressionReport::new(&scene.model, energy));
+    let expressions = expressions.collect();
     let processes = scene.model.processes.iter();
     let processes = processes.map(|process| ProcessReport {
         name: process.name.clone(),
@@ -167,6 +212,7 @@ fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(),
         obstacles,
         constraints,
         loads,
+        expressions,
         processes,
         probes: scene.probes.into_iter().map(|probe| probe.name).collect(),
         warnings: scene
@@ -238,6 +284,14 @@ impl Report {
                 load.name,
                 load.shell,
                 load.words
+            );
+        }
+        for energy in &self.expressions {
+            say!(
+                "energy {}: {}, shell {}",
+                energy.name,
+                energy.words,
+                energy.shell
             );
         }
         for process in &self.processes {

@@ -127,7 +127,7 @@ impl Observable for State<'_> {
         self.0.shell_velocities(shell).to_vec()
     }
 
-    fn energies(&self) -> Vec<(&'static str, f64)> {
+    fn energies(&self) -> Vec<(String, f64)> {
         self.0.energies()
     }
 

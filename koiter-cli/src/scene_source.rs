@@ -43,6 +43,11 @@ const SHIPPED: &[Shipped] = &[
         meshes: &[],
     },
     Shipped {
+        name: "flag-in-the-wind",
+        text: include_str!("../../scenes/flag-in-the-wind/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
         name: "v-beam",
         text: include_str!("../../scenes/v-beam/scene.toml"),
         meshes: &[],

@@ -97,7 +97,7 @@ fn elastic(simulation: &Simulation) -> f64 {
     let energies = simulation.energies();
     let stored = energies
         .iter()
-        .filter(|(name, _)| ["membrane", "bending"].contains(name));
+        .filter(|(name, _)| ["membrane", "bending"].contains(&name.as_str()));
     stored.map(|(_, energy)| energy).sum()
 }
 

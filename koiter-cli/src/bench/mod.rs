@@ -7,6 +7,7 @@ mod contact;
 mod convergence;
 mod creased_vee;
 mod drape;
+mod explicit;
 mod lateral_buckling;
 mod models;
 mod published;
@@ -28,6 +29,7 @@ pub(crate) fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         BenchSubject::Solve(options) => solve::bench(options),
         BenchSubject::Contact(options) => contact::bench(options),
         BenchSubject::Drape(options) => drape::bench(options),
+        BenchSubject::Explicit(options) => explicit::bench(options),
         BenchSubject::Convergence(options) => {
             return convergence::bench(options, arguments.json);
         }

@@ -41,7 +41,7 @@ pub(super) struct StatsLine<'a> {
     contacts_by_bodies: &'a [(String, usize)],
     largest_forces: Vec<ForceRecord<'a>>,
     #[serde(serialize_with = "as_map")]
-    energies: &'a [(&'static str, f64)],
+    energies: &'a [(String, f64)],
     #[serde(serialize_with = "as_map")]
     seconds: &'a [(&'static str, f64)],
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -62,7 +62,7 @@ pub(super) struct StatsLine<'a> {
 /// Line searches that one cause ended.
 #[derive(Serialize)]
 struct LimitRecord<'a> {
-    by: &'static str,
+    by: &'a str,
     count: usize,
     smallest_fraction: f64,
     at: &'a str,
@@ -71,7 +71,7 @@ struct LimitRecord<'a> {
 /// The element of an energy that pulls most.
 #[derive(Serialize)]
 struct ForceRecord<'a> {
-    energy: &'static str,
+    energy: &'a str,
     force: f64,
     at: &'a str,
 }
@@ -80,14 +80,14 @@ impl<'a> StatsLine<'a> {
     pub(super) fn new(report: &'a StepReport) -> Self {
         let diagnostics = &report.diagnostics;
         let limits = diagnostics.limits.iter().map(|limit| LimitRecord {
-            by: limit.by,
+            by: &limit.by,
             count: limit.count,
             smallest_fraction: limit.smallest_fraction,
             at: &limit.place,
         });
         let forces = diagnostics.largest_forces.iter();
         let forces = forces.map(|largest| ForceRecord {
-            energy: largest.energy,
+            energy: &largest.energy,
             force: largest.force,
             at: &largest.place,
         });

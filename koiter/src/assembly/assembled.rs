@@ -11,6 +11,9 @@ use super::{
 /// Elements whose Hessians are held at a time: few enough to stay in the cache, enough to occupy all cores.
 const BATCH: usize = 512;
 
+/// Elements whose gradients are held at a time.
+const GRADIENT_BATCH: usize = 4096;
+
 /// A [`LocalEnergy`] summed over its elements.
 pub struct Assembled<L, const N: usize, const K: usize> {
     local: L,
@@ -115,6 +118,22 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
         }
     }
 
+    /// Adds the gradients of all elements, in order, and returns their values.
+    fn add_gradients(&self, q: &[f64], gradient: &mut [f64]) -> Vec<f64> {
+        let count = self.nodes.len();
+        let mut values = Vec::with_capacity(count);
+        for first in (0..count).step_by(GRADIENT_BATCH) {
+            let locals = parallel_map(GRADIENT_BATCH.min(count - first), |k| {
+                (self.local).gradient(first + k, &self.gather(first + k, q))
+            });
+            for (k, (value, local)) in locals.iter().enumerate() {
+                values.push(*value);
+                self.scatter_gradient(first + k, local, gradient);
+            }
+        }
+        values
+    }
+
     fn evaluate(&self, stencil: usize, q: &[f64], projection: PsdProjection) -> LocalHessian<N> {
         let local = self.gather(stencil, q);
         match projection {
@@ -138,8 +157,12 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
 }
 
 impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<L, N, K> {
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         self.local.name()
+    }
+
+    fn set_time(&mut self, time: f64) {
+        self.local.set_time(time);
     }
 
     fn value(&self, q: &[f64]) -> f64 {
@@ -156,12 +179,15 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
         if self.factor == 0.0 {
             return;
         }
-        let locals = parallel_map(self.nodes.len(), |s| {
-            self.local.gradient(s, &self.gather(s, q)).1
-        });
-        for (stencil, local) in locals.iter().enumerate() {
-            self.scatter_gradient(stencil, local, gradient);
+        self.add_gradients(q, gradient);
+    }
+
+    fn add_value_and_gradient(&self, q: &[f64], gradient: &mut [f64]) -> f64 {
+        if self.factor == 0.0 {
+            return 0.0;
         }
+        let values = self.add_gradients(q, gradient);
+        self.factor * ordered_sum(values.len(), |s| values[s])
     }
 
     /// Elements are evaluated in parallel batch by batch and added in order, one batch while the next is evaluated.

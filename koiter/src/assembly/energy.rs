@@ -80,11 +80,13 @@ pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
     /// Whether measures are angles that are followed beyond half a turn.
     const HAS_BRANCHES: bool = false;
     /// Name in reports.
-    fn name(&self) -> &'static str;
+    fn name(&self) -> &str;
     /// Number of elements.
     fn num_stencils(&self) -> usize;
     /// First unknown of each node of an element.
     fn nodes(&self, stencil: usize) -> [Option<Dof>; K];
+    /// See [`Energy::set_time`].
+    fn set_time(&mut self, _time: f64) {}
     /// φ_s [J].
     fn value(&self, stencil: usize, q: &SVector<f64, N>) -> f64;
     /// φ_s and its gradient.
@@ -166,10 +168,21 @@ pub trait RestMeasures {
     fn set_factor(&mut self, factor: f64);
 }
 
+/// The matrix `weight · vector vectorᵀ`.
+#[derive(Clone, Debug)]
+pub struct LowRank {
+    /// Positive.
+    pub weight: f64,
+    /// One entry an unknown.
+    pub vector: Vec<f64>,
+}
+
 /// An energy over all unknowns, as solver and integrator see it.
 pub trait Energy: Send + Sync {
     /// Name in reports.
-    fn name(&self) -> &'static str;
+    fn name(&self) -> &str;
+    /// Takes the time [s] at the end of the coming step: energies that depend on it change here.
+    fn set_time(&mut self, _time: f64) {}
     /// Called before a minimisation starts at `q`: contact finds its candidates here.
     fn prepare(&mut self, _q: &[f64]) {}
     /// Called before derivatives are asked for at `q`: contact collects its active pairs here.
@@ -178,6 +191,11 @@ pub trait Energy: Send + Sync {
     fn value(&self, q: &[f64]) -> f64;
     /// Adds ∇Φ(q).
     fn add_gradient(&self, q: &[f64], gradient: &mut [f64]);
+    /// Adds ∇Φ(q) and returns Φ(q), where one evaluation gives both.
+    fn add_value_and_gradient(&self, q: &[f64], gradient: &mut [f64]) -> f64 {
+        self.add_gradient(q, gradient);
+        self.value(q)
+    }
     /// Adds ∇Φ(q) and ∇²Φ(q). `q` is that of the last [`Energy::begin_iteration`].
     fn add_derivatives(
         &self,
@@ -186,6 +204,11 @@ pub trait Energy: Send + Sync {
         gradient: &mut [f64],
         hessian: &mut HessianBuilder<'_>,
     );
+    /// What belongs to ∇²Φ but couples too much with too much to be stored: positive matrices of rank one.
+    /// [`Energy::add_derivatives`] leaves it out.
+    fn low_rank(&self, _q: &[f64]) -> Vec<LowRank> {
+        Vec::new()
+    }
     /// Registers the pairs of nodes that the Hessian couples at `q`.
     fn add_to_pattern(&self, _q: &[f64], _pattern: &mut PatternBuilder) {}
     /// Whether the pairs of nodes depend on `q`.

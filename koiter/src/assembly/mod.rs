@@ -6,6 +6,7 @@
 
 mod assembled;
 mod dof;
+mod element_function;
 mod energy;
 mod matrix;
 mod parallel;
@@ -14,8 +15,10 @@ mod space;
 
 pub use assembled::Assembled;
 pub use dof::{Dof, DofLayout, NodeId};
+pub use element_function::{Differentiated, ElementFunction};
 pub use energy::{
-    Energy, LocalEnergy, LocalHessian, PsdProjection, RestMeasures, WorstElement, variables,
+    Energy, LocalEnergy, LocalHessian, LowRank, PsdProjection, RestMeasures, WorstElement,
+    variables,
 };
 pub use matrix::{CoupledPairs, HessianBuilder, Pattern, PatternBuilder, SymmetricMatrix};
 pub use parallel::{ordered_sum, parallel_map};

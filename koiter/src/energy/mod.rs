@@ -7,9 +7,12 @@ mod membrane;
 mod strain_limit;
 
 pub mod bending;
+pub mod expression;
 pub mod loads;
 
-pub use discrete_membrane::{DiscreteStiffness, EdgeLengths, FaceAreas};
+pub use discrete_membrane::{
+    DiscreteStiffness, EdgeLengths, FaceAreas, rest_lengths as edge_rest_lengths,
+};
 pub use gravity::Gravity;
 pub use inertia::Inertia;
 pub use membrane::Membrane;

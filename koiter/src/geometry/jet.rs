@@ -30,6 +30,57 @@ pub trait Real:
     fn ln(self) -> Self;
     /// Angle of the point `(x, self)`, in (−π, π].
     fn atan2(self, x: Self) -> Self;
+    /// `f(self)` for a function with this value and these first two derivatives here.
+    fn function(self, value_and_derivatives: [f64; 3]) -> Self;
+
+    /// Exponential.
+    fn exp(self) -> Self {
+        let exp = self.value().exp();
+        self.function([exp; 3])
+    }
+    /// Cosine.
+    fn cos(self) -> Self {
+        let (sin, cos) = self.value().sin_cos();
+        self.function([cos, -sin, -cos])
+    }
+    /// Angle in [−π/2, π/2] of this sine.
+    fn asin(self) -> Self {
+        let x = self.value();
+        let slope = 1.0 / (1.0 - x * x).sqrt();
+        self.function([x.asin(), slope, x * slope * slope * slope])
+    }
+    /// Angle in [0, π] of this cosine.
+    fn acos(self) -> Self {
+        let x = self.value();
+        let slope = 1.0 / (1.0 - x * x).sqrt();
+        self.function([x.acos(), -slope, -x * slope * slope * slope])
+    }
+    /// Angle in [−π/2, π/2] of this tangent.
+    fn atan(self) -> Self {
+        let x = self.value();
+        let slope = 1.0 / (1.0 + x * x);
+        self.function([x.atan(), slope, -2.0 * x * slope * slope])
+    }
+    /// Absolute value; its slope at 0 is taken to be 0.
+    fn abs(self) -> Self {
+        let x = self.value();
+        let sign = if x == 0.0 { 0.0 } else { x.signum() };
+        self.function([x.abs(), sign, 0.0])
+    }
+    /// Power with a constant exponent; of a negative number NaN unless the exponent is whole.
+    fn powf(self, exponent: f64) -> Self {
+        let x = self.value();
+        // Not 0 · ∞ where the base is 0 and a derivative vanishes for any base.
+        let scaled = |factor: f64, power: f64| match factor == 0.0 {
+            true => 0.0,
+            false => factor * x.powf(power),
+        };
+        self.function([
+            x.powf(exponent),
+            scaled(exponent, exponent - 1.0),
+            scaled(exponent * (exponent - 1.0), exponent - 2.0),
+        ])
+    }
 }
 
 impl Real for f64 {
@@ -50,6 +101,9 @@ impl Real for f64 {
     }
     fn atan2(self, x: Self) -> Self {
         self.atan2(x)
+    }
+    fn function(self, [value, ..]: [f64; 3]) -> Self {
+        value
     }
 }
 
@@ -232,15 +286,71 @@ impl<const N: usize> Real for Jet<N> {
         let pure = 2.0 * x0 * y / r4;
         self.combine(&x, y.atan2(x0), x0 / r2, -y / r2, -pure, mixed, pure)
     }
+    fn function(self, [value, slope, curvature]: [f64; 3]) -> Self {
+        self.chain(value, slope, curvature)
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::Dual;
     use super::*;
     use num_dual::{DualNum, hessian};
 
     fn formula<R: Real>(x: R, y: R) -> R {
         (x * y + 2.0).sqrt() * (x / y).sin() - y.atan2(x) + (x * 0.3).tan() * y.ln() - (-x)
+    }
+
+    fn derived<R: Real>(x: R, y: R) -> R {
+        (x * -0.5).exp() * y.cos() + (x * 0.5).asin() * (y * 0.4).acos()
+            - (y * x).atan() * x.powf(2.5)
+            + (x - y).abs() * y.powf(-2.0)
+    }
+
+    #[test]
+    fn derived_functions_agree_with_an_independent_dual_number_library() {
+        let (x, y) = (0.7, 1.3);
+        let (value, gradient, second) = hessian(
+            |v| {
+                let (x, y) = (v[0], v[1]);
+                (x * -0.5).exp() * y.cos() + (x * 0.5).asin() * (y * 0.4).acos()
+                    - (y * x).atan() * x.powf(2.5)
+                    + (y - x) * y.powi(-2)
+            },
+            &nalgebra::SVector::<f64, 2>::new(x, y),
+        );
+        let jet = derived(Jet::<2>::variable(x, 0), Jet::variable(y, 1));
+        let dual = derived(Dual::<2>::variable(x, 0), Dual::variable(y, 1));
+        assert!((jet.value() - value).abs() < 1e-14 && (derived(x, y) - value).abs() < 1e-14);
+        assert!((dual.value() - value).abs() < 1e-14);
+        for i in 0..2 {
+            assert!((jet.gradient()[i] - gradient[i]).abs() < 1e-14);
+            assert!((dual.gradient()[i] - gradient[i]).abs() < 1e-14);
+            for j in 0..2 {
+                assert!((jet.hessian(i, j) - second[(i, j)]).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn powers_and_absolute_values_have_derivatives_at_zero() {
+        let zero = Jet::<1>::variable(0.0, 0);
+        let square = zero.powf(2.0);
+        assert_eq!((square.gradient()[0], square.hessian(0, 0)), (0.0, 2.0));
+        let cube = zero.abs().powf(3.0);
+        assert_eq!((cube.gradient()[0], cube.hessian(0, 0)), (0.0, 0.0));
+        assert_eq!(zero.powf(1.0).gradient()[0], 1.0);
+    }
+
+    #[test]
+    fn first_derivatives_alone_are_those_of_jets() {
+        let (x, y) = (0.7, 1.3);
+        let jet = formula(Jet::<2>::variable(x, 0), Jet::variable(y, 1));
+        let dual = formula(Dual::<2>::variable(x, 0), Dual::variable(y, 1));
+        assert!((jet.value() - dual.value()).abs() < 1e-15);
+        for i in 0..2 {
+            assert!((jet.gradient()[i] - dual.gradient()[i]).abs() < 1e-14);
+        }
     }
 
     #[test]

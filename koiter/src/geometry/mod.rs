@@ -10,6 +10,7 @@
 
 mod closest;
 mod crossing;
+mod dual;
 mod jet;
 mod log_barrier;
 pub mod over_numbers;
@@ -20,6 +21,7 @@ pub use closest::{
     point_triangle, point_triangle_distance_squared,
 };
 pub use crossing::segment_meets_triangle;
+pub use dual::Dual;
 pub use jet::{Jet, Real};
 pub use log_barrier::{log_barrier, log_barrier_slope_quotient};
 pub use wing::{Wing, WingFunctional, hinge_angle};

@@ -16,6 +16,7 @@
 
 use crate::assembly::{DofLayout, Energy};
 use crate::energy::Inertia;
+use crate::energy::expression::RateEnergy;
 
 /// Φ, with what it is told every step.
 pub struct Damper {
@@ -55,6 +56,8 @@ pub struct Damping {
     pub dampers: Vec<Damper>,
     /// a m of every solved unknown [kg/s, or kg·m²/s for directors]; empty: no drag.
     pub drag: Vec<f64>,
+    /// Forces by dissipation functions, which may drive as well as damp.
+    pub rates: Vec<Box<dyn RateEnergy>>,
     /// The drag of the step under way.
     drag_energy: Option<Inertia>,
 }
@@ -116,6 +119,11 @@ fn moved(q: &[f64], velocities: &[f64], time: f64) -> Vec<f64> {
 impl Damping {
     /// Whether there is any.
     pub fn is_none(&self) -> bool {
+        self.is_conservative() && self.rates.is_empty()
+    }
+
+    /// Whether neither strains nor masses are damped.
+    fn is_conservative(&self) -> bool {
         self.dampers.is_empty() && self.drag.is_empty()
     }
 
@@ -131,6 +139,13 @@ impl Damping {
             }
             measures.set_rest(&rest);
             measures.set_factor(damper.time / rule.reach);
+        }
+        let start = &rule.base[0].1;
+        if !self.rates.is_empty() {
+            let base = rule.combined(<[f64]>::to_vec);
+            for rate in &mut self.rates {
+                rate.begin(start, &base, rule.reach);
+            }
         }
         self.drag_energy = (!self.drag.is_empty()).then(|| Inertia {
             masses: self.drag.clone(),
@@ -148,7 +163,17 @@ impl Damping {
                 .expect("a damped energy has measures")
                 .set_factor(0.0);
         }
+        for rate in &mut self.rates {
+            rate.rest();
+        }
         self.drag_energy = None;
+    }
+
+    /// Parameters of dissipation functions are those of this time [s].
+    pub(crate) fn set_time(&mut self, time: f64) {
+        for rate in &mut self.rates {
+            rate.set_time(time);
+        }
     }
 
     /// The rest values of an elastic energy change by this much in a step of `dt` [s].
@@ -177,12 +202,20 @@ impl Damping {
     pub(super) fn energies(&mut self) -> impl Iterator<Item = &mut dyn Energy> {
         let strains =
             (self.dampers.iter_mut()).map(|damper| damper.energy.as_mut() as &mut dyn Energy);
+        let rates = (self.rates.iter_mut()).map(|rate| rate.as_mut() as &mut dyn Energy);
         let drag = (self.drag_energy.iter_mut()).map(|drag| drag as &mut dyn Energy);
-        strains.chain(drag)
+        strains.chain(rates).chain(drag)
     }
 
-    /// Adds ∇D, minus the forces of damping at the end of the last step.
+    /// Adds ∇D, minus the forces of damping and of dissipation functions at the end of the last step.
     pub fn add_gradient(&self, q: &[f64], gradient: &mut [f64]) {
+        for rate in &self.rates {
+            rate.add_gradient(q, gradient);
+        }
+        self.add_damping(q, gradient);
+    }
+
+    fn add_damping(&self, q: &[f64], gradient: &mut [f64]) {
         for damper in &self.dampers {
             damper.energy.add_gradient(q, gradient);
         }
@@ -191,14 +224,31 @@ impl Damping {
         }
     }
 
-    /// The work that a step to `q` took by its forces at the end [J]; `None` where nothing damps.
-    pub(super) fn dissipated(&self, layout: &DofLayout, before: &[f64], q: &[f64]) -> Option<f64> {
-        if self.is_none() {
-            return None;
+    /// The work that a step to `q` took by its forces at the end [J], of damping where there is some and of each dissipation
+    /// function; negative where it drove.
+    pub(super) fn taken(
+        &self,
+        layout: &DofLayout,
+        before: &[f64],
+        q: &[f64],
+    ) -> Vec<(String, f64)> {
+        let work = |add: &dyn Fn(&mut [f64])| -> f64 {
+            let mut gradient = vec![0.0; q.len()];
+            add(&mut gradient);
+            let solved = 0..layout.num_solved_dofs();
+            solved.map(|i| gradient[i] * (q[i] - before[i])).sum()
+        };
+        let mut taken = Vec::new();
+        if !self.is_conservative() {
+            taken.push((
+                "damping".into(),
+                work(&|gradient| self.add_damping(q, gradient)),
+            ));
         }
-        let mut gradient = vec![0.0; q.len()];
-        self.add_gradient(q, &mut gradient);
-        let solved = 0..layout.num_solved_dofs();
-        Some(solved.map(|i| gradient[i] * (q[i] - before[i])).sum())
+        for rate in &self.rates {
+            let work = work(&|gradient| rate.add_gradient(q, gradient));
+            taken.push((rate.name().to_owned(), work));
+        }
+        taken
     }
 }

@@ -29,7 +29,7 @@ pub struct Diagnostics {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LargestForce {
     /// Name of the energy.
-    pub energy: &'static str,
+    pub energy: String,
     /// Norm of the element's gradient [N; with rotations also N·m].
     pub force: f64,
     /// The element, in the user's terms.
@@ -108,7 +108,7 @@ impl Diagnostics {
 
     /// What to try when a step did not converge.
     pub fn advice(&self) -> &'static str {
-        match self.main_limit().map(|limit| limit.by) {
+        match self.main_limit().map(|limit| limit.by.as_str()) {
             Some("contact") => {
                 "Try a smaller time.dt, a larger contact.d_hat, or slower obstacles; look at that place for layers that \
                  are squeezed between things that cannot give way"
@@ -132,7 +132,7 @@ impl Diagnostics {
 }
 
 fn describe(limit: &Limit, iterations: usize) -> String {
-    let mut text = match limit.by {
+    let mut text = match limit.by.as_str() {
         DECREASE => "the energy did not fall over the whole of".to_owned(),
         by => format!("{} cut short", by.replace('_', " ")),
     };
@@ -153,7 +153,7 @@ mod tests {
 
     fn limit(by: &'static str, count: usize, smallest_fraction: f64, place: &str) -> Limit {
         Limit {
-            by,
+            by: by.into(),
             count,
             smallest_fraction,
             place: place.into(),

@@ -36,6 +36,15 @@ pub enum LinearError {
         /// The unknown, in the user's terms.
         unknown: String,
     },
+    /// A stiffness that couples everything with everything.
+    #[error(
+        "energy '{energy}' is of a whole shell: it couples all unknowns, which linear statics, vibrations and buckling cannot \
+         solve for; use energies of vertices, edges, hinges or faces"
+    )]
+    Dense {
+        /// Name of the energy.
+        energy: String,
+    },
     /// The eigenvalues were not found.
     #[error(transparent)]
     Modes(#[from] EigenNotConverged),
@@ -97,6 +106,7 @@ impl System {
         q: &[f64],
         prescribed: &Prescribed,
     ) -> Result<Vec<f64>, LinearError> {
+        self.check_sparse(q)?;
         let (matrix, gradient) = self.second_derivatives(q, Part::Elastic);
         let force = gradient.iter().map(|g| -g).collect();
         self.response_to(force, matrix, q, prescribed)
@@ -134,6 +144,7 @@ impl System {
         is_fixed: &[bool],
         count: usize,
     ) -> Result<Vec<VibrationMode>, LinearError> {
+        self.check_sparse(q)?;
         let mut tangent = self.second_derivatives(q, Part::Elastic).0;
         let loads = self.second_derivatives(q, Part::Loads).0;
         add(&mut tangent, 1.0, &loads);
@@ -173,6 +184,7 @@ impl System {
         is_fixed: &[bool],
         count: usize,
     ) -> Result<Vec<BucklingMode>, LinearError> {
+        self.check_sparse(q)?;
         let still = Prescribed {
             is_fixed: is_fixed.to_vec(),
             target: q.to_vec(),
@@ -211,6 +223,17 @@ impl System {
                 shape: pair.vector,
             })
             .collect())
+    }
+
+    /// Refuses energies whose second derivatives are not all in the matrix.
+    fn check_sparse(&self, q: &[f64]) -> Result<(), LinearError> {
+        let mut elastic = self.elastic.iter();
+        match elastic.find(|energy| !energy.low_rank(q).is_empty()) {
+            None => Ok(()),
+            Some(energy) => Err(LinearError::Dense {
+                energy: energy.name().into(),
+            }),
+        }
     }
 
     /// Exact second derivatives of a part of the energies, and the gradient of all.

@@ -22,6 +22,8 @@
 //! What is prescribed has the velocity and acceleration of backward differences, and so has what has no mass: the rule
 //! above would let them ring for ever. Reference: N. M. Newmark, "A method of computation for structural dynamics" (1959).
 
+use std::time::Instant;
+
 use super::damping::RateRule;
 use super::energy_monitor::EnergyMonitor;
 use super::system::Solved;
@@ -161,6 +163,7 @@ impl Newmark {
         dt: f64,
     ) -> Result<StepReport, StepError> {
         let step = state.step + 1;
+        let clock = Instant::now();
         let (stable_dt, age) = match state.memory {
             Memory::Accelerated { stable_dt, age, .. } if age < ESTIMATE_EVERY => (stable_dt, age),
             _ => (
@@ -175,6 +178,7 @@ impl Newmark {
                 stable_dt,
             });
         }
+        let mut seconds = vec![("stable_step", clock.elapsed().as_secs_f64())];
         let mut q = self.prediction(state, dt);
         let solved_dofs = system.masses.len();
         for (i, x) in q.iter_mut().enumerate() {
@@ -183,7 +187,10 @@ impl Newmark {
             }
         }
         system.damping.begin(&RateRule::backward(&state.q, dt));
-        let gradient = system.total_gradient(&q).map_err(|error| (step, error))?;
+        let clock = Instant::now();
+        let (gradient, elastic) =
+            (system.total_gradient_and_elastic(&q)).map_err(|error| (step, error))?;
+        seconds.push(("forces", clock.elapsed().as_secs_f64()));
         let masses = &system.masses;
         let mut next = self.next(
             (&*state, q, dt),
@@ -200,7 +207,7 @@ impl Newmark {
             dt,
             ..Default::default()
         };
-        system.finish(state, next, Solved::nothing(), report)
+        system.finish(state, next, Solved::explicit(elastic, seconds), report)
     }
 }
 

@@ -2,9 +2,6 @@
 
 use super::diagnostics::Diagnostics;
 
-/// Names of energies that a step takes away: they add up over its parts.
-const TAKEN_IN_A_STEP: [&str; 2] = ["friction", "damping"];
-
 /// What one step did. Not converging is told here; it is not an error.
 #[derive(Clone, Debug, Default)]
 pub struct StepReport {
@@ -23,8 +20,10 @@ pub struct StepReport {
     /// The last Newton step, measured on the offset surfaces and divided by `dt` [m/s] (statics: [m]).
     pub residual: f64,
     /// Energies by name [J] at the end of the step; `friction` is what the step's sliding took and `damping` what its damping
-    /// took, by the forces at its end: neither is stored energy.
-    pub energies: Vec<(&'static str, f64)>,
+    /// took, by the forces at its end, as do the entries of dissipation functions: none is stored energy.
+    pub energies: Vec<(String, f64)>,
+    /// Names of those energies that a step takes away beside friction: they add up over its parts.
+    pub taken: Vec<String>,
     /// Seconds spent, by part; the names are snake_case, like all keys of results.
     pub seconds: Vec<(&'static str, f64)>,
     /// Active contact pairs.
@@ -68,7 +67,7 @@ impl StepReport {
         self.add_effort(&part);
         let mut energies = part.energies;
         for (name, value) in &mut energies {
-            if TAKEN_IN_A_STEP.contains(name) {
+            if name == "friction" || part.taken.contains(name) {
                 let before = self.energies.iter().find(|(known, _)| known == name);
                 *value += before.map_or(0.0, |(_, taken)| *taken);
             }

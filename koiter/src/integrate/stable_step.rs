@@ -11,7 +11,7 @@
 use super::System;
 use super::damping::RateRule;
 use super::linear::Part;
-use crate::assembly::SymmetricMatrix;
+use crate::assembly::{LowRank, SymmetricMatrix};
 
 /// Each brings the estimate nearer to the largest eigenvalue.
 const ITERATIONS: usize = 60;
@@ -23,13 +23,26 @@ impl System {
         // With half a step for τ the Hessian of damping is 2 C/dt.
         self.damping.begin(&RateRule::backward(q, 0.5 * dt));
         let (matrix, _) = self.second_derivatives(q, Part::Motion);
+        let dense: Vec<LowRank> = (self.elastic.iter())
+            .flat_map(|energy| energy.low_rank(q))
+            .collect();
+        let multiply = |matrix: &SymmetricMatrix, x: &[f64]| {
+            let mut image = matrix.multiply(x);
+            for LowRank { weight, vector } in &dense {
+                let share = weight * dot(vector, x);
+                for (image, entry) in image.iter_mut().zip(vector) {
+                    *image += share * entry;
+                }
+            }
+            image
+        };
         let scale: Vec<f64> = (self.masses.iter().zip(is_fixed))
             .map(|(&mass, &fixed)| match fixed || mass == 0.0 {
                 true => 0.0,
                 false => 1.0 / mass.sqrt(),
             })
             .collect();
-        let Some((shape, eigenvalue)) = largest(&matrix, &scale) else {
+        let Some((shape, eigenvalue)) = largest(&|x| multiply(&matrix, x), &scale) else {
             return f64::INFINITY;
         };
         if self.damping.is_none() {
@@ -37,16 +50,16 @@ impl System {
         }
         let (undamped, _) = self.second_derivatives(q, Part::All);
         // The quotients lie below the eigenvalue as far as the iteration has not ended: both by the same share.
-        let all = dot(&shape, &matrix.multiply(&shape));
-        let stiffness = eigenvalue / all * dot(&shape, &undamped.multiply(&shape));
+        let all = dot(&shape, &multiply(&matrix, &shape));
+        let stiffness = eigenvalue / all * dot(&shape, &multiply(&undamped, &shape));
         let damping = 0.5 * dt * (eigenvalue - stiffness).max(0.0);
         4.0 / (damping + (damping * damping + 4.0 * stiffness.max(0.0)).sqrt())
     }
 }
 
-/// The largest eigenvalue of `S A S`, S the diagonal matrix of `scale`, and S times its vector of unit length; `None` if
+/// The largest eigenvalue of `S A S`, A a multiplication, S the diagonal matrix of `scale`, and S times its vector of unit length; `None` if
 /// nothing moves.
-fn largest(matrix: &SymmetricMatrix, scale: &[f64]) -> Option<(Vec<f64>, f64)> {
+fn largest(multiply: &dyn Fn(&[f64]) -> Vec<f64>, scale: &[f64]) -> Option<(Vec<f64>, f64)> {
     // No two entries alike, so that no symmetry hides the fastest vibration.
     let mut x: Vec<f64> = (0..scale.len())
         .map(|i| ((i * i + 3) as f64 * 0.7).sin())
@@ -58,7 +71,7 @@ fn largest(matrix: &SymmetricMatrix, scale: &[f64]) -> Option<(Vec<f64>, f64)> {
             return None;
         }
         shape = x.iter().zip(scale).map(|(x, s)| x * s / norm).collect();
-        let image = matrix.multiply(&shape);
+        let image = multiply(&shape);
         x = image.iter().zip(scale).map(|(y, s)| y * s).collect();
     }
     Some((shape, dot(&x, &x).sqrt()))

@@ -64,17 +64,21 @@ pub(super) struct Solved {
     pub(super) newton: NewtonReport,
     /// The potential of friction at the end [J]: what the step's sliding takes. `None` without contact.
     friction: Option<f64>,
+    /// The elastic energies at the end, where they came with the forces; else empty.
+    elastic: Vec<f64>,
 }
 
 impl Solved {
-    /// Of a step without a minimisation.
-    pub(super) fn nothing() -> Self {
+    /// Of a step without a minimisation, with the elastic energies at its end and where its time went.
+    pub(super) fn explicit(elastic: Vec<f64>, seconds: Vec<(&'static str, f64)>) -> Self {
         Self {
             newton: NewtonReport {
                 converged: true,
+                seconds,
                 ..Default::default()
             },
             friction: None,
+            elastic,
         }
     }
 }
@@ -136,7 +140,11 @@ impl System {
             }
         }
         let friction = self.contact.is_some().then(|| friction.value(q));
-        Ok(Solved { newton, friction })
+        Ok(Solved {
+            newton,
+            friction,
+            elastic: Vec::new(),
+        })
     }
 
     /// Minimises the sum of energies with friction as it was lagged.
@@ -184,15 +192,20 @@ impl System {
     }
 
     /// Energies by name at a state; the kinetic energy only where there is motion, that of clamps where there are some.
-    pub fn energies(&self, state: &State) -> Vec<(&'static str, f64)> {
-        let mut energies: Vec<(&'static str, f64)> = Vec::new();
-        let mut add =
-            |name: &'static str, value: f64| match energies.iter_mut().find(|(n, _)| *n == name) {
-                Some((_, total)) => *total += value,
-                None => energies.push((name, value)),
-            };
-        for energy in &self.elastic {
-            add(energy.name(), energy.value(&state.q));
+    pub fn energies(&self, state: &State) -> Vec<(String, f64)> {
+        let elastic = self.elastic.iter().map(|energy| energy.value(&state.q));
+        self.energies_with(state, elastic.collect())
+    }
+
+    /// [`Self::energies`] where those of `elastic` are known.
+    fn energies_with(&self, state: &State, elastic: Vec<f64>) -> Vec<(String, f64)> {
+        let mut energies: Vec<(String, f64)> = Vec::new();
+        let mut add = |name: &str, value: f64| match energies.iter_mut().find(|(n, _)| n == name) {
+            Some((_, total)) => *total += value,
+            None => energies.push((name.into(), value)),
+        };
+        for (energy, value) in self.elastic.iter().zip(elastic) {
+            add(energy.name(), value);
         }
         if !self.clamps.local().edges.is_empty() {
             add(self.clamps.name(), self.clamps.value(&state.q));
@@ -235,13 +248,25 @@ impl System {
 
     /// ∇Φ of all energies at `q` and what damping adds, what the forces add up to with the sign changed.
     pub(super) fn total_gradient(&mut self, q: &[f64]) -> Result<Vec<f64>, SolveError> {
-        let mut gradient = self.gradient_of_energies(q)?;
+        Ok(self.total_gradient_and_elastic(q)?.0)
+    }
+
+    /// [`Self::total_gradient`] with the elastic energies.
+    pub(super) fn total_gradient_and_elastic(
+        &mut self,
+        q: &[f64],
+    ) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
+        let (mut gradient, elastic) = self.gradient_and_elastic(q)?;
         self.damping.add_gradient(q, &mut gradient);
-        Ok(gradient)
+        Ok((gradient, elastic))
     }
 
     /// ∇Φ of all energies at `q`; contact is brought up to date.
     fn gradient_of_energies(&mut self, q: &[f64]) -> Result<Vec<f64>, SolveError> {
+        Ok(self.gradient_and_elastic(q)?.0)
+    }
+
+    fn gradient_and_elastic(&mut self, q: &[f64]) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
         if let Some(contact) = &mut self.contact {
             contact.prepare(q);
             contact.refresh(q);
@@ -251,8 +276,13 @@ impl System {
         energies.extend([&self.gravity as &dyn Energy, &self.loads]);
         energies.extend(self.contact.iter().map(|contact| contact as &dyn Energy));
         let mut gradient = vec![0.0; q.len()];
-        for energy in &energies {
-            energy.add_gradient(q, &mut gradient);
+        let mut elastic = Vec::with_capacity(self.elastic.len());
+        for (index, energy) in energies.iter().enumerate() {
+            if index < self.elastic.len() {
+                elastic.push(energy.add_value_and_gradient(q, &mut gradient));
+            } else {
+                energy.add_gradient(q, &mut gradient);
+            }
             let is_defined = energy.is_admissible(q);
             if !is_defined || gradient.iter().any(|g| !g.is_finite()) {
                 let worst = energy.worst_element(q);
@@ -262,7 +292,7 @@ impl System {
                 });
             }
         }
-        Ok(gradient)
+        Ok((gradient, elastic))
     }
 
     /// Checks the new state, adopts it, and completes the report.
@@ -273,7 +303,12 @@ impl System {
         solved: Solved,
         mut report: StepReport,
     ) -> Result<StepReport, StepError> {
-        let Solved { newton, friction } = solved;
+        let Solved {
+            newton,
+            friction,
+            elastic,
+        } = solved;
+        let is_explicit = !elastic.is_empty();
         let clock = std::time::Instant::now();
         let mut seconds = newton.seconds.clone();
         let mut diagnostics = Diagnostics::of_newton(&newton);
@@ -302,7 +337,10 @@ impl System {
         }
         seconds.push(("audit", clock.elapsed().as_secs_f64()));
         let clock = std::time::Instant::now();
-        diagnostics.largest_forces = self.largest_forces(&next.q);
+        // They say what a search for a minimum has to overcome; an explicit step is shorter than their evaluation.
+        if !is_explicit {
+            diagnostics.largest_forces = self.largest_forces(&next.q);
+        }
         seconds.push(("diagnostics", clock.elapsed().as_secs_f64()));
         self.loads.rebase(&next.q);
         report.step = next.step;
@@ -311,13 +349,17 @@ impl System {
         report.line_search_steps = newton.line_search_steps;
         report.converged = newton.converged;
         report.seconds = seconds;
-        report.energies = self.energies(&next);
+        report.energies = match is_explicit {
+            true => self.energies_with(&next, elastic),
+            false => self.energies(&next),
+        };
         report
             .energies
-            .extend(friction.map(|taken| ("friction", taken)));
+            .extend(friction.map(|taken| ("friction".into(), taken)));
         if self.is_dynamic {
-            let damped = self.damping.dissipated(&self.layout, &state.q, &next.q);
-            (report.energies).extend(damped.map(|taken| ("damping", taken)));
+            let taken = self.damping.taken(&self.layout, &state.q, &next.q);
+            report.taken = taken.iter().map(|(name, _)| name.clone()).collect();
+            report.energies.extend(taken);
         }
         self.follow(&next.q);
         if !newton.converged {
@@ -326,6 +368,14 @@ impl System {
         report.diagnostics = diagnostics;
         *state = next;
         Ok(report)
+    }
+
+    /// Energies that depend on time are those of this time [s].
+    pub(crate) fn set_time(&mut self, time: f64) {
+        for energy in &mut self.elastic {
+            energy.set_time(time);
+        }
+        self.damping.set_time(time);
     }
 
     /// Angles of hinges go on from those at `q`, which may be beyond half a turn.
@@ -380,7 +430,7 @@ impl System {
             };
             let part = worst.unknown.and_then(|dof| self.shell_of(dof.0 as usize));
             let largest = LargestForce {
-                energy: energy.name(),
+                energy: energy.name().into(),
                 force: worst.gradient_norm,
                 place: match part {
                     Some(name) => format!("{} of '{name}'", worst.description),

@@ -4,6 +4,7 @@ use super::arc_length::ArcLengthError;
 use super::clamps::Clamps;
 use super::composition_error::CompositionError;
 use super::elastic::{Elastic, rest_surface};
+use super::expressions::expressions;
 use super::loads::loads;
 use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
 use super::processes::ProcessError;
@@ -14,6 +15,7 @@ use crate::contact::{
     CollisionBody, CollisionMesh, CollisionPlane, Contact, StartError, UnknownBody,
 };
 use crate::energy::Gravity;
+use crate::energy::expression::ExpressionError;
 use crate::integrate::{OffsetSurfaces, ShellPart, System};
 use crate::rest::RestError;
 use crate::solve::LinearWorkspace;
@@ -117,6 +119,44 @@ pub enum BuildError {
          take implicit steps with beta = 0.25"
     )]
     ExplicitWithoutMass,
+    /// An expression that cannot be read.
+    #[error("energy '{energy}': {error}")]
+    Expression {
+        /// Name of the energy.
+        energy: String,
+        /// What is wrong with it.
+        error: ExpressionError,
+    },
+    /// An expression without a value or derivatives at the start.
+    #[error(
+        "energy '{energy}' is not defined at the start on {element}, or its derivatives are not: a division by zero, a root or \
+         a logarithm of nothing? Add a small number under the root, or start elsewhere"
+    )]
+    UndefinedEnergy {
+        /// Name of the energy.
+        energy: String,
+        /// The element.
+        element: String,
+    },
+    /// An expression over no elements.
+    #[error("energy '{energy}': the selection holds no whole {elements}")]
+    NoElements {
+        /// Name of the energy.
+        energy: String,
+        /// What it is of.
+        elements: &'static str,
+    },
+    /// The volume of a shell that encloses none.
+    #[error(
+        "energy '{energy}': shell '{shell}' has a boundary and encloses no volume; use a closed mesh, or a [[load]] with \
+         'pressure', which acts on open shells too"
+    )]
+    OpenShell {
+        /// Name of the energy.
+        energy: String,
+        /// Name of the shell.
+        shell: String,
+    },
     /// Something touches or intersects at the start.
     #[error(transparent)]
     Start(#[from] StartError),
@@ -147,11 +187,14 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     let unknowns = Unknowns::new(model);
     let (mut q, velocities) = unknowns.start(model);
     let Elastic {
-        energies,
+        mut energies,
         masses,
-        damping,
+        mut damping,
         parts,
     } = Elastic::new(model, &unknowns, &mut q)?;
+    let written = expressions(model, &parts, &masses, &unknowns.layout, &q)?;
+    energies.extend(written.potentials);
+    damping.rates = written.rates;
     let (clamps, clamped_edges) = Clamps::new(model, &parts, &q);
     let symmetry = symmetry_edges(model, &parts, &q)?;
     let loads = loads(model, &parts, &unknowns.layout, &q)?;

@@ -2,6 +2,7 @@
 
 mod arc_length;
 mod composition;
+mod energies;
 mod loads;
 mod phases;
 mod processes;
@@ -116,6 +117,7 @@ impl Builder<'_> {
             .collect::<Result<_, _>>()?;
         let constraints = self.constraints(&shells)?;
         let loads = self.loads(&shells)?;
+        let energies = self.energies(&shells)?;
         let processes = self.processes(&shells)?;
         let symmetry_planes = self.symmetry_planes(&shells)?;
         let (contact, solver) = (&spec.contact, SolverOptions::default());
@@ -125,6 +127,7 @@ impl Builder<'_> {
             constraints,
             symmetry_planes,
             loads,
+            energies,
             processes,
             gravity: Vec3::from(spec.gravity),
             gravity_scale: spec.gravity_scale.clone(),

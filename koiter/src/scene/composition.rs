@@ -336,6 +336,16 @@ impl Shell {
         Ok((grown, grown.components(second), grown.direction(axis)))
     }
 
+    /// The material's axis in the frame of a face, a unit vector; where the axis stands across the face, the first edge.
+    pub(super) fn material_axis(&self, face: usize, frame: &RestFrame) -> [f64; 2] {
+        let [i, j, k] = self.surface.mesh.faces()[face].map(|v| self.rest_positions[v as usize]);
+        let edges = [j - i, k - i];
+        let [e1, e2] = edges;
+        let of_mesh = [e1.norm_squared(), e1.dot(&e2), e2.norm_squared()];
+        let axis = self.axis_in_edges(face, of_mesh, edges);
+        axis.map_or([1.0, 0.0], |axis| frame.direction(axis))
+    }
+
     /// The material's axis, projected on a rest face, in the basis of its edges.
     fn axis_in_edges(
         &self,

@@ -12,6 +12,7 @@ mod composition;
 mod composition_error;
 mod display;
 mod elastic;
+mod expressions;
 mod fingerprint;
 mod free_parts;
 mod holds;

@@ -5,10 +5,12 @@ use crate::mesh::{EdgeId, FaceId, VertexId};
 
 pub use super::composition::{Composition, FaceValues, MaterialLaw, RestPrescription};
 pub use super::damping::DampingOptions;
+pub use super::expressions::{TextEnergy, TextValue};
 pub use super::material_models::MaterialModel;
 pub use super::membrane_models::MembraneModel;
 pub use super::processes::{ProcessKind, RestProcess};
 pub use crate::energy::bending::{HingeSprings, HingeWeight};
+pub use crate::energy::expression::ElementKind;
 pub use crate::energy::{DiscreteStiffness, StretchLimit};
 pub use crate::material::Layer;
 pub use crate::mesh::Surface;
@@ -443,6 +445,8 @@ pub struct Model {
     pub symmetry_planes: Vec<SymmetryPlane>,
     /// Loads.
     pub loads: Vec<Load>,
+    /// Energies and forces that are written as texts.
+    pub energies: Vec<TextEnergy>,
     /// What changes rest curvatures over time.
     pub processes: Vec<RestProcess>,
     /// Gravitational acceleration [m/s²].

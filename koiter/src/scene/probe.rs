@@ -44,7 +44,7 @@ pub trait Observable {
     /// Velocities of a shell's vertices [m/s].
     fn velocities(&self, shell: usize) -> Vec<Vec3>;
     /// Energies by name [J].
-    fn energies(&self) -> Vec<(&'static str, f64)>;
+    fn energies(&self) -> Vec<(String, f64)>;
     /// Total force that a constraint exerts on its vertices [N].
     fn reaction(&self, constraint: usize) -> Vec3;
     /// The factor on scheduled loads; 0 without arc length.
@@ -124,7 +124,7 @@ pub(super) fn mean(values: &[Vec3], vertices: &[usize]) -> Vec3 {
     sum / vertices.len() as f64
 }
 
-fn total_energy(energies: &[(&'static str, f64)], name: Option<&str>) -> f64 {
+fn total_energy(energies: &[(String, f64)], name: Option<&str>) -> f64 {
     match name {
         Some(name) => energies
             .iter()
@@ -147,8 +147,8 @@ mod tests {
         fn velocities(&self, _: usize) -> Vec<Vec3> {
             vec![Vec3::z(), Vec3::z()]
         }
-        fn energies(&self) -> Vec<(&'static str, f64)> {
-            vec![("membrane", 1.0), ("bending", 0.5)]
+        fn energies(&self) -> Vec<(String, f64)> {
+            vec![("membrane".into(), 1.0), ("bending".into(), 0.5)]
         }
         fn reaction(&self, _: usize) -> Vec3 {
             2.0 * Vec3::x()

@@ -38,7 +38,7 @@ pub(in crate::scene) fn preset_name(_: &mut SchemaGenerator) -> Schema {
 
 /// An energy.
 pub(super) fn energy_name(_: &mut SchemaGenerator) -> Schema {
-    schema!({ "type": "string", "enum": ENERGY_NAMES })
+    schema!({ "anyOf": [{ "type": "string", "enum": ENERGY_NAMES }, { "type": "string" }] })
 }
 
 /// A field of a run.

@@ -10,12 +10,13 @@ use super::phases::phase_of_step;
 use super::processes::Processes;
 use super::symmetry::held_by;
 use crate::Vec3;
-use crate::assembly::{Assembled, Dof, Energy};
+use crate::assembly::{Assembled, Dof, DofLayout, Energy};
 use crate::energy::bending::ExtraUnknowns;
 use crate::integrate::{
     Bdf2, ImplicitEuler, Integrator, LinearStatic, LoadPattern, Memory, Newmark, Prescribed,
     QuasiStatic, State, StepError, StepReport, System,
 };
+use crate::mesh::VertexId;
 
 /// A model with its state, advanced step by step.
 pub struct Simulation {
@@ -51,7 +52,7 @@ pub struct SystemStats {
     /// Memory a step takes, estimated [bytes].
     pub estimated_memory_bytes: usize,
     /// Names of the energies.
-    pub energies: Vec<&'static str>,
+    pub energies: Vec<String>,
 }
 
 /// Peaks of runs with BAC: 38 MB at 2.6k unknowns, 187 MB at 14k, 234 MB at 30k, 2.9 GB at 483k. Most is the factor.
@@ -205,6 +206,7 @@ impl Simulation {
         self.system.gravity.acceleration =
             phase.gravity * scale.map_or(1.0, |scale| scale.at(time));
         set_factors(&self.model, phase, time, &mut self.system.loads);
+        self.system.set_time(time);
         self.holds
             .move_clamps(&self.model, time, self.system.clamps.local_mut());
     }
@@ -226,6 +228,30 @@ impl Simulation {
             write_points(target, *first, &obstacle.points_at(points, time));
         }
         prescribed
+    }
+
+    /// Adds an energy, such as one of the caller's own ([`crate::assembly::ElementFunction`]), to those that are minimised and
+    /// listed by name. Its unknowns are those of [`Self::layout`]; checkpoints do not know of it.
+    ///
+    /// # Panics
+    /// If steps have been taken already: the pattern of the matrix is that of the energies at the first.
+    pub fn add_energy(&mut self, energy: Box<dyn Energy>) {
+        assert!(
+            self.system.workspace.matrix().is_none(),
+            "energies are added before the first step"
+        );
+        self.system.elastic.push(energy);
+        self.apply_schedules(self.state.time);
+    }
+
+    /// The unknowns and their nodes.
+    pub fn layout(&self) -> &DofLayout {
+        &self.system.layout
+    }
+
+    /// The first of the three unknowns of a vertex of a shell.
+    pub fn vertex(&self, shell: usize, vertex: VertexId) -> Dof {
+        Dof(self.system.space.shells[shell].first_vertex.0 + 3 * vertex.0)
     }
 
     /// Simulated time [s].
@@ -337,7 +363,7 @@ impl Simulation {
     }
 
     /// Energies by name [J].
-    pub fn energies(&self) -> Vec<(&'static str, f64)> {
+    pub fn energies(&self) -> Vec<(String, f64)> {
         self.system.energies(&self.state)
     }
 
@@ -413,8 +439,7 @@ impl Simulation {
         let dofs = self.system.layout.num_solved_dofs();
         let nonzeros = |s: &Shell| s.surface.mesh.num_faces() * nonzeros_a_face(s.bending);
         let hessian_nonzeros = self.model.shells.iter().map(nonzeros).sum();
-        let mut energies: Vec<&'static str> =
-            self.energies().into_iter().map(|(name, _)| name).collect();
+        let mut energies: Vec<String> = self.energies().into_iter().map(|(name, _)| name).collect();
         energies.dedup();
         SystemStats {
             vertices: sum(&|m| m.num_vertices()),

@@ -23,6 +23,7 @@ mod constraint;
 mod contact;
 mod damping;
 mod discrete_shells;
+mod energy;
 mod load;
 mod material;
 mod newmark;
@@ -38,6 +39,7 @@ pub use constraint::{BoundsSpec, ConstraintSpec, SelectSpec};
 pub use contact::{ContactSpec, PairSpec};
 pub use damping::DampingSpec;
 pub use discrete_shells::DiscreteShellsSpec;
+pub use energy::{EnergySpec, ParameterSpec};
 pub use load::{EdgeChoice, LoadSpec};
 pub use material::{LayerSpec, MaterialSpec};
 pub use newmark::NewmarkSpec;
@@ -106,6 +108,9 @@ pub struct SceneSpec {
     /// Loads.
     #[serde(default)]
     pub load: Vec<LoadSpec>,
+    /// Energies, and forces that depend on velocity, as expressions.
+    #[serde(default)]
+    pub energy: Vec<EnergySpec>,
     /// What changes rest shapes over time.
     #[serde(default)]
     pub process: Vec<ProcessSpec>,
@@ -265,7 +270,7 @@ pub struct ProbeSpec {
     /// Only this component.
     #[serde(default)]
     pub axis: Option<Axis>,
-    /// Name of the energy; default: the sum.
+    /// Name of the energy, a built-in one or that of an `[[energy]]`; default: the sum.
     #[serde(default)]
     #[schemars(schema_with = "super::schema::energy_name")]
     pub energy: Option<String>,

@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limiter {
     /// The energy that bounds the step or is not defined further on; [`DECREASE`] where the sum of energies does not fall.
-    pub by: &'static str,
+    pub by: String,
     /// What stands in the way, in the user's terms; may be empty.
     pub place: String,
 }
@@ -16,7 +16,7 @@ pub const DECREASE: &str = "decrease";
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
     /// As [`Limiter::by`].
-    pub by: &'static str,
+    pub by: String,
     /// How many.
     pub count: usize,
     /// The smallest fraction of a step that was left.

@@ -60,7 +60,7 @@ pub(super) fn line_search(
         if allowed < bound {
             bound = allowed;
             report.limiter = Some(Limiter {
-                by: energy.name(),
+                by: energy.name().into(),
                 place: energy.step_limiter().unwrap_or_default(),
             });
         }
@@ -138,11 +138,11 @@ fn search(
 fn stopped_by(undefined: Option<(&dyn Energy, Vec<f64>)>) -> Limiter {
     match undefined {
         Some((energy, trial)) => Limiter {
-            by: energy.name(),
+            by: energy.name().into(),
             place: energy.undefined_element(&trial).unwrap_or_default(),
         },
         None => Limiter {
-            by: DECREASE,
+            by: DECREASE.into(),
             place: String::new(),
         },
     }

@@ -5,6 +5,7 @@ mod eigen;
 mod ldlt;
 mod limits;
 mod line_search;
+mod low_rank;
 mod multifrontal;
 mod newton;
 mod ordering;

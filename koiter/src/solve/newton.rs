@@ -9,10 +9,13 @@ use std::time::Instant;
 
 use super::limits::{Limit, Limiter};
 use super::line_search::{SearchLine, line_search};
+use super::low_rank;
 use super::pace::Pace;
 use super::saddle::leave_saddle;
 use super::workspace::LinearWorkspace;
-use crate::assembly::{ConfigurationSpace, DofLayout, Energy, HessianBuilder, PsdProjection};
+use crate::assembly::{
+    ConfigurationSpace, DofLayout, Energy, HessianBuilder, LowRank, PsdProjection,
+};
 
 /// What to minimise and what is held.
 pub struct Problem<'a> {
@@ -102,7 +105,7 @@ impl NewtonReport {
     fn count_limit(&mut self) {
         let limiter = self.limiter.iter().filter(|_| self.last_fraction < 1.0);
         let limits = limiter.map(|limiter| Limit {
-            by: limiter.by,
+            by: limiter.by.clone(),
             count: 1,
             smallest_fraction: self.last_fraction,
             place: limiter.place.clone(),
@@ -274,7 +277,10 @@ fn newton_step(
     let remaining = direction.iter().fold(0.0f64, |m, d| m.max(d.abs()));
     let (gradient, mut rhs) = factorized_system(problem, workspace, q, &direction, pace, report)?;
     let start = Instant::now();
-    workspace.factor.solve(&mut rhs);
+    let factor = workspace.factor.as_mut();
+    let energies = problem.energies.iter();
+    let dense: Vec<LowRank> = energies.flat_map(|energy| energy.low_rank(q)).collect();
+    low_rank::solve(factor, dense, problem.is_fixed, &direction, &mut rhs);
     direction[..solved].copy_from_slice(&rhs);
     report.spend("linear_solve", start);
     let slope = gradient.iter().zip(&direction).map(|(g, d)| g * d).sum();

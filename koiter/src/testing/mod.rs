@@ -29,7 +29,7 @@ pub struct Claims {
 #[error("{energy}: {property} fails at element {stencil}: {found} instead of {expected}")]
 pub struct Violation {
     /// Name of the energy.
-    pub energy: &'static str,
+    pub energy: String,
     /// The property.
     pub property: &'static str,
     /// The element, or the unknown for properties of the sum.
@@ -54,10 +54,10 @@ pub fn check<const N: usize, const K: usize, L: LocalEnergy<N, K>>(
     formula: impl Fn(&L, usize, &[Jet<N>; N]) -> Jet<N>,
     claims: &Claims,
 ) -> Result<(), Violation> {
-    let name = local.name();
+    let name = local.name().to_owned();
     let fail = |property, stencil, found, expected| {
         Err(Violation {
-            energy: name,
+            energy: name.clone(),
             property,
             stencil,
             found,
@@ -100,7 +100,7 @@ pub fn check_claims(
 ) -> Result<(), Violation> {
     let fail = |property, stencil, found, expected| {
         Err(Violation {
-            energy: energy.name(),
+            energy: energy.name().into(),
             property,
             stencil,
             found,
@@ -436,10 +436,10 @@ pub fn check_global(
     layout: &DofLayout,
     q: &[f64],
 ) -> Result<(), Violation> {
-    let name = energy.name();
+    let name = energy.name().to_owned();
     let fail = |property, stencil, found, expected| {
         Err(Violation {
-            energy: name,
+            energy: name.clone(),
             property,
             stencil,
             found,

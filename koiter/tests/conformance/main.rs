@@ -1,5 +1,6 @@
 //! Every energy passes the conformance suite; a planted error does not.
 
+mod expressions;
 mod loads;
 mod setup;
 
@@ -312,7 +313,7 @@ fn check_rest_measures<const N: usize, const K: usize>(
     local: impl LocalEnergy<N, K>,
 ) {
     let mut energy = Assembled::new(local, layout);
-    let (before, name) = (energy.value(q), energy.name());
+    let (before, name) = (energy.value(q), energy.name().to_owned());
     let at_rest = energy.rest_measures().expect("it has measures").rest();
     let measures = energy.rest_measures_mut().unwrap();
     let now = measures.measure(q);

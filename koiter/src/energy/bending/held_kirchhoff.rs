@@ -124,7 +124,7 @@ impl<'a, S: Section> HeldKirchhoff<'a, S> {
 impl<S: Section> LocalEnergy<9, 3> for HeldKirchhoff<'_, S> {
     const NODE_SIZES: [usize; 3] = [3; 3];
 
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         self.bending.name()
     }
 

@@ -60,7 +60,7 @@ impl<'a, P: AngleProfile, S: Section> HeldMidEdge<'a, P, S> {
 impl<P: AngleProfile, S: Section> LocalEnergy<3, 3> for HeldMidEdge<'_, P, S> {
     const NODE_SIZES: [usize; 3] = [1; 3];
 
-    fn name(&self) -> &'static str {
+    fn name(&self) -> &str {
         self.bending.name()
     }
 

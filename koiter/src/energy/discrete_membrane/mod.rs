@@ -87,7 +87,7 @@ impl Stiffnesses {
 }
 
 /// Rest lengths of all edges [m]: the mean of both faces, should a prescribed rest metric let them disagree.
-fn rest_lengths(mesh: &TriMesh, frames: &[RestFrame]) -> Vec<f64> {
+pub fn rest_lengths(mesh: &TriMesh, frames: &[RestFrame]) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); mesh.num_edges()];
     for (frame, edges) in frames.iter().zip(mesh.face_edges()) {
         for (length, edge) in frame.edge_lengths().into_iter().zip(edges) {

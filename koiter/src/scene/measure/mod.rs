@@ -196,6 +196,7 @@ impl Measurement<'_> {
             gravity: Vec3::zeros(),
             gravity_scale: None,
             loads: Vec::new(),
+            energies: Vec::new(),
             processes: Vec::new(),
             symmetry_planes: Vec::new(),
             contact: ContactOptions {

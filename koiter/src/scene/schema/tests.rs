@@ -35,6 +35,11 @@ name = "lift"
 shell = "sheet"
 select.all = true
 force = [0.0, 0.0, 1.0]
+[[energy]]
+name = "spring"
+shell = "sheet"
+on = "vertex"
+energy = "z"
 [[process]]
 name = "fold"
 shell = "sheet"

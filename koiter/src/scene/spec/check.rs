@@ -15,6 +15,7 @@ use self::obstacle::check_obstacle;
 pub use self::phases::MAX_STEPS;
 use super::damping::check_damping;
 use super::discrete_shells::check_discrete_shells;
+use super::energy::check_energy;
 use super::material::check_material;
 use super::newmark::check_newmark;
 use super::process::check_process;
@@ -80,6 +81,13 @@ pub(super) fn check(spec: &SceneSpec) -> Checked {
     }
     for load in &spec.load {
         loads::check_load(load, spec)?;
+    }
+    unique(
+        "energy",
+        (spec.energy.iter()).map(|energy| Some(energy.name.as_str())),
+    )?;
+    for energy in &spec.energy {
+        check_energy(energy, spec)?;
     }
     unique(
         "process",
@@ -214,7 +222,7 @@ pub(super) fn check_shell_name(path: &str, name: &str, spec: &SceneSpec) -> Chec
     .with_help(suggest(name, &names)))
 }
 
-fn check_select(path: &str, select: &SelectSpec) -> Checked {
+pub(super) fn check_select(path: &str, select: &SelectSpec) -> Checked {
     let given = select.all
         || select.cuboid.is_some()
         || select.vertices.is_some()
@@ -275,12 +283,16 @@ fn check_probe(path: &str, probe: &ProbeSpec, spec: &SceneSpec) -> Checked {
             ));
         }
     }
-    if let Some(name) = &probe.energy
-        && !ENERGY_NAMES.contains(&name.as_str())
-    {
-        let message = format!("there is no energy '{name}'");
-        return Err(error(Kind::UnknownName, &at("energy"), message)
-            .with_help(suggest(name, &ENERGY_NAMES)));
+    if let Some(name) = &probe.energy {
+        let stored = spec.energy.iter().filter(|energy| energy.is_stored());
+        let mut names = ENERGY_NAMES.to_vec();
+        names.extend(stored.map(|energy| energy.name.as_str()));
+        if !names.contains(&name.as_str()) {
+            let message = format!("there is no energy '{name}'");
+            return Err(
+                error(Kind::UnknownName, &at("energy"), message).with_help(suggest(name, &names))
+            );
+        }
     }
     if let Some(shell) = &probe.shell {
         check_shell_name(&at("shell"), shell, spec)?;

@@ -2,6 +2,7 @@ mod constraint;
 mod contact;
 mod damping;
 mod discrete_shells;
+mod energy;
 mod obstacle;
 mod phase;
 mod process;
