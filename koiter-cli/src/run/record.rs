@@ -296,7 +296,7 @@ mod tests {
         let report = StepReport {
             step: 1,
             min_gap: f64::INFINITY,
-            energies: vec![("membrane", 2.0)],
+            energies: vec![("membrane".into(), 2.0)],
             seconds: vec![("solve", 0.5)],
             ..StepReport::default()
         };
