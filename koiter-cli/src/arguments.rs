@@ -15,8 +15,8 @@ pub(crate) use aids::{
 pub(crate) use modes::ModesArguments;
 pub(crate) use scenes::{ScenesArguments, Variation};
 pub(crate) use studies::{
-    ConvergenceArguments, CreasedVeeArguments, DirectorSource, EnergyArguments, RestCurvature,
-    bending_models,
+    ConvergenceArguments, CreasedVeeArguments, DirectorSource, DiscreteShellsArguments,
+    DiscreteShellsCase, EnergyArguments, RestCurvature, bending_models,
 };
 pub(crate) use validation::ValidateArguments;
 pub(crate) use viewing::ViewArguments;
@@ -94,7 +94,7 @@ and others) complete its keys and mark mistakes.")]
 SCENE is a scene.toml, a folder that holds one, or a scene that ships with Koiter:
   sphere-drape, drape-n, cantilever, hanging-sheet, flag-in-the-wind, v-beam, rolled-strip, hinged-roof, lateral-buckling,
   popper, pinned-drop, ball-crash, can-crush, cone-crush, twisted-cylinder, twisted-sheet, corrugated-collision,
-  your-own-mesh
+  beams, hats, paper-sheet, your-own-mesh
 
 Examples:
   koiter run sphere-drape
@@ -322,6 +322,9 @@ pub(crate) enum BenchSubject {
     Convergence(ConvergenceArguments),
     /// Bending energies of an unresolved crease: "Better Bending", Table 5, Figures 13 and 14
     CreasedVee(CreasedVeeArguments),
+    /// The scenes of "Discrete Shells" and what its integrator conserves, beside an independent program; status 1 if a figure
+    /// is outside
+    DiscreteShells(DiscreteShellsArguments),
     /// When a heavy plate that stands on edge buckles sideways: "Better Bending", Figure 26
     LateralBuckling(LateralBucklingArguments),
 }

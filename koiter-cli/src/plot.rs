@@ -1,6 +1,7 @@
-//! `koiter plot`: the figures of a run, from `stats.jsonl`.
+//! `koiter plot`: the figures of a run, from `stats.jsonl` and `probes.csv`.
 
 mod page;
+mod probes;
 
 use std::path::Path;
 
@@ -39,6 +40,7 @@ pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
     let chart = page::page(
         &reader.manifest().title,
         &lines,
+        probes::panels(&arguments.result, &reader.manifest().scene_text),
         is_over,
         &arguments.figures,
     );

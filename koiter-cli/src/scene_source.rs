@@ -111,6 +111,21 @@ const SHIPPED: &[Shipped] = &[
         meshes: &[],
     },
     Shipped {
+        name: "beams",
+        text: include_str!("../../scenes/beams/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "hats",
+        text: include_str!("../../scenes/hats/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "paper-sheet",
+        text: include_str!("../../scenes/paper-sheet/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
         name: "your-own-mesh",
         text: include_str!("../../scenes/your-own-mesh/scene.toml"),
         meshes: &[(

@@ -61,8 +61,9 @@ Examples:
   koiter plot results/sphere-drape -o drape.svg
   koiter plot results/sphere-drape -o drape.png --size 1600x1200
   koiter plot results/sphere-drape -o slow.png --figures seconds,iterations,fraction
+  koiter plot results/beams -o tips.svg --figures probes --size 1200x500
 
-Reads stats.jsonl, also of a run that still goes on or was stopped.")]
+Reads stats.jsonl and probes.csv, also of a run that still goes on or was stopped.")]
 pub(crate) struct PlotArguments {
     /// Result folder
     #[arg(value_hint = ValueHint::DirPath)]
@@ -84,6 +85,8 @@ pub(crate) struct PlotArguments {
 /// A figure of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Figure {
+    /// What the probes measured, a panel a quantity
+    Probes,
     /// Load factor of a path followed by arc length
     LoadFactor,
     /// All energies

@@ -134,6 +134,35 @@ pub(crate) struct CreasedVeeArguments {
     pub(crate) plot: Option<PathBuf>,
 }
 
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  koiter bench discrete-shells
+  koiter bench discrete-shells --cases paper,beams --json")]
+pub(crate) struct DiscreteShellsArguments {
+    /// What to compute
+    #[arg(
+        long,
+        value_enum,
+        value_delimiter = ',',
+        default_value = "conservation,beams,paper,hats"
+    )]
+    pub(crate) cases: Vec<DiscreteShellsCase>,
+}
+
+/// Parts of the benchmark of Discrete Shells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DiscreteShellsCase {
+    /// Momenta, energy, order in time, the longest explicit step, gains of energy
+    Conservation,
+    /// Flat beams and V-beams of three stiffnesses: Figure 2
+    Beams,
+    /// A sheet that is curled, creased and pulled: Figure 3
+    Paper,
+    /// Hats that fall: Figure 1
+    Hats,
+}
+
 /// The models of a list of names; `all` stands for all that bend.
 ///
 /// # Errors

@@ -6,6 +6,7 @@ mod assembly;
 mod contact;
 mod convergence;
 mod creased_vee;
+mod discrete_shells;
 mod drape;
 mod explicit;
 mod lateral_buckling;
@@ -38,6 +39,7 @@ pub(crate) fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         }
         BenchSubject::Scenes(options) => scenes::bench(options),
         BenchSubject::Models(options) => models::bench(options),
+        BenchSubject::DiscreteShells(options) => discrete_shells::bench(options),
         BenchSubject::LateralBuckling(options) => lateral_buckling::bench(options),
     }?;
     if arguments.json {

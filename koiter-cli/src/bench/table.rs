@@ -20,6 +20,8 @@ pub(super) enum Cell {
     Text(String),
     Count(usize),
     Figure(f64),
+    /// Four digits, whatever its size.
+    Precise(f64),
 }
 
 impl From<usize> for Cell {
@@ -50,7 +52,24 @@ impl fmt::Display for Cell {
             Self::Figure(figure) if figure.abs() >= 10.0 => f.pad(&format!("{figure:.1}")),
             Self::Figure(figure) if figure.abs() >= 1.0 => f.pad(&format!("{figure:.2}")),
             Self::Figure(figure) => f.pad(&format!("{figure:.3}")),
+            Self::Precise(figure) => f.pad(&four_digits(*figure)),
         }
+    }
+}
+
+/// Plain from a thousandth to a hundred thousand, else with an exponent.
+fn four_digits(figure: f64) -> String {
+    let size = figure.abs();
+    if size == 0.0 || !size.is_finite() {
+        return format!("{figure}");
+    }
+    let digits_before = size.log10().floor() as i32;
+    match digits_before {
+        -3..=4 => format!(
+            "{figure:.0$}",
+            usize::try_from(3 - digits_before).unwrap_or(0)
+        ),
+        _ => format!("{figure:.3e}"),
     }
 }
 
@@ -78,7 +97,7 @@ impl Table {
         let value = |cell: &Cell| match cell {
             Cell::Text(text) => json!(text),
             Cell::Count(count) => json!(count),
-            Cell::Figure(figure) => json!(figure),
+            Cell::Figure(figure) | Cell::Precise(figure) => json!(figure),
         };
         let rows: Vec<Map<String, Value>> = (self.rows.iter())
             .map(|row| {
@@ -117,5 +136,24 @@ impl fmt::Display for Table {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn precise_figures_have_four_digits() {
+        for (figure, text) in [
+            (13.2071, "13.21"),
+            (-0.0044502, "-0.004450"),
+            (2.3e-14, "2.300e-14"),
+            (123456.0, "1.235e5"),
+            (12345.6, "12346"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(Cell::Precise(figure).to_string(), text);
+        }
     }
 }

@@ -14,9 +14,15 @@ const POTENTIALS: [&str; 2] = ["gravity", "loads"];
 /// Energies below this share of the largest are round-off, which would take up most of a logarithmic axis.
 const LEAST_ENERGY: f64 = 1e-9;
 
-/// Panels of the figures `wanted`, or of all that have something to show. Figures that a line lacks, or that are null, are
-/// gaps.
-pub(super) fn page(title: &str, lines: &[Value], is_over: bool, wanted: &[Figure]) -> Chart {
+/// Panels of the figures `wanted`, or of all that have something to show, with those of the probes. Figures that a line
+/// lacks, or that are null, are gaps.
+pub(super) fn page(
+    title: &str,
+    lines: &[Value],
+    probes: Vec<Panel>,
+    is_over: bool,
+    wanted: &[Figure],
+) -> Chart {
     // A line without a time stands at its number.
     let times = (1..)
         .zip(lines)
@@ -24,8 +30,10 @@ pub(super) fn page(title: &str, lines: &[Value], is_over: bool, wanted: &[Figure
     let page = Page {
         lines,
         times: times.collect(),
+        probes,
     };
     let all = [
+        Figure::Probes,
         Figure::LoadFactor,
         Figure::Energies,
         Figure::SmallEnergies,
@@ -40,9 +48,12 @@ pub(super) fn page(title: &str, lines: &[Value], is_over: bool, wanted: &[Figure
         [] => all
             .into_iter()
             .filter(|figure| page.has(*figure))
-            .map(|figure| page.panel(figure))
+            .flat_map(|figure| page.panels(figure))
             .collect(),
-        wanted => wanted.iter().map(|&figure| page.panel(figure)).collect(),
+        wanted => wanted
+            .iter()
+            .flat_map(|&figure| page.panels(figure))
+            .collect(),
     };
     Chart {
         title: page.title(title, is_over),
@@ -56,6 +67,7 @@ pub(super) fn page(title: &str, lines: &[Value], is_over: bool, wanted: &[Figure
 struct Page<'a> {
     lines: &'a [Value],
     times: Vec<f64>,
+    probes: Vec<Panel>,
 }
 
 fn number(value: &Value) -> f64 {
@@ -98,7 +110,7 @@ impl Page<'_> {
         }
     }
 
-    fn panel(&self, figure: Figure) -> Panel {
+    fn panels(&self, figure: Figure) -> Vec<Panel> {
         let panel = |name: &str, unit: &str, style, weight, series| Panel {
             name: name.to_owned(),
             unit: unit.to_owned(),
@@ -113,7 +125,8 @@ impl Page<'_> {
             is_count: true,
             ..panel(name, "", Style::Stack, 1.2, series)
         };
-        match figure {
+        let panel = match figure {
+            Figure::Probes => return self.probes.clone(),
             Figure::LoadFactor => {
                 panel("load factor", "", Style::Lines, 2.0, single("load_factor"))
             }
@@ -155,7 +168,8 @@ impl Page<'_> {
                 0.8,
                 single("kappa"),
             ),
-        }
+        };
+        vec![panel]
     }
 
     fn over_time(&self, name: &str, value: &dyn Fn(&Value) -> f64) -> Series {
@@ -311,7 +325,7 @@ mod tests {
             json!({}),
             json!("no table"),
         ];
-        let chart = page("Run", &lines, false, &[]);
+        let chart = page("Run", &lines, Vec::new(), false, &[]);
         assert_eq!(chart.title, "Run: 4 steps, 0 Newton iterations so far");
         let energies = &chart.panels[0].series;
         assert_eq!(
@@ -332,7 +346,7 @@ mod tests {
             "contacts_by_bodies": { "a with b": 3 },
             "seconds": { "assembly": 9.0, "audit": 0.01, "contact": 0.02, "linear_solve": 12.0 },
         })];
-        let chart = page("Run", &lines, true, &[]);
+        let chart = page("Run", &lines, Vec::new(), true, &[]);
         assert_eq!(
             chart.title,
             "Run: 1 step, 9 Newton iterations, 1 not converged"
@@ -364,7 +378,13 @@ mod tests {
         assert!((of("seconds")[2].1 - 0.03).abs() < 1e-15);
         assert_eq!(of("contacts"), [("a with b".to_owned(), 3.0)]);
         assert!(find("contacts").is_count && find("barrier").series[0].points[0][1] == 2.0);
-        let chosen = page("Run", &lines, true, &[Figure::Gap, Figure::LoadFactor]);
+        let chosen = page(
+            "Run",
+            &lines,
+            Vec::new(),
+            true,
+            &[Figure::Gap, Figure::LoadFactor],
+        );
         assert_eq!(
             (chosen.panels.len(), chosen.panels[0].name.as_str()),
             (2, "smallest gap")

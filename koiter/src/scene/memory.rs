@@ -136,6 +136,9 @@ fn generated_faces(spec: &MeshSpec) -> f64 {
         spec.vee
             .as_ref()
             .map(|g| 2.0 * face_count::cells(g.along, g.across)),
+        spec.hat
+            .as_ref()
+            .map(|g| face_count::hat(g.around, g.rings)),
         spec.panel
             .as_ref()
             .map(|g| face_count::cells(g.cells[0], g.cells[1])),
@@ -205,6 +208,7 @@ mod tests {
             "icosphere = { radius = 1.0, subdivisions = 3 }",
             "torus = { major_radius = 1.0, minor_radius = 0.3, around = 40, tube = 20 }",
             "vee = { length = 1.0, width = 0.5, degrees = 90.0, along = 20, across = 10 }",
+            "hat = { radius = 1.0, height = 1.2, brim = 0.5, slope = 0.1, around = 40, rings = 20 }",
             "panel = { radius = 1.0, length = 2.0, degrees = [0.0, 40.0], cells = [20, 30] }",
             "zone = { radius = 1.0, longitudes = [0.0, 90.0], latitudes = [0.0, 72.0], cells = [20, 30] }",
             "cap = { radius = 1.0, degrees = 80.0, hole_degrees = 10.0, rings = 15 }",

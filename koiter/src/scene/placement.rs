@@ -4,7 +4,7 @@ use nalgebra::{Rotation3, Unit};
 
 use super::spec::{CylinderSpec, Diagonals, MeshSpec, RotationSpec, UpAxis};
 use crate::Vec3;
-use crate::mesh::generate::{self, Corrugation, GeneratorError, GridDiagonals};
+use crate::mesh::generate::{self, Corrugation, GeneratorError, GridDiagonals, HatSize};
 use crate::mesh::{MeshError, OrientationPolicy, Surface, SurfaceOptions, UnreferencedPolicy};
 
 /// Where mesh files and files of values by face come from; the library's scenes read no files themselves.
@@ -182,6 +182,15 @@ fn generate(spec: &MeshSpec) -> Result<Surface, GeneratorError> {
     }
     if let Some(g) = &spec.vee {
         return generate::vee(g.length, g.width, g.degrees.to_radians(), g.along, g.across);
+    }
+    if let Some(g) = &spec.hat {
+        let size = HatSize {
+            radius: g.radius,
+            height: g.height,
+            brim: g.brim,
+            slope: g.slope,
+        };
+        return generate::hat(size, g.around, g.rings);
     }
     // The scene's checks let exactly one shape through.
     Err(GeneratorError::Mesh(MeshError::Empty))

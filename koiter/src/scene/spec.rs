@@ -51,8 +51,8 @@ pub use shape::{
     UpAxis,
 };
 pub use shape::{
-    CapSpec, ConeSpec, CorrugationSpec, CylinderSpec, Diagonals, DiscSpec, GridSpec, IcosphereSpec,
-    IrregularSpec, PanelSpec, TorusSpec, VeeSpec, ZoneSpec,
+    CapSpec, ConeSpec, CorrugationSpec, CylinderSpec, Diagonals, DiscSpec, GridSpec, HatSpec,
+    IcosphereSpec, IrregularSpec, PanelSpec, TorusSpec, VeeSpec, ZoneSpec,
 };
 
 pub use strain_limit::StrainLimitSpec;

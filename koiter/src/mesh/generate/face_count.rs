@@ -20,6 +20,11 @@ pub fn delaunay(width: f64, depth: f64, [nx, ny]: [usize; 2], max_area: f64) -> 
     2.0 * width * depth / max_area + 8.0 * (nx as f64 + ny as f64) + 16.0
 }
 
+/// Of [`hat`](super::hat()).
+pub fn hat(around: usize, rings: usize) -> f64 {
+    cells(around, rings) - around as f64
+}
+
 /// Of [`disc`](super::disc).
 pub fn disc(rings: usize) -> f64 {
     6.0 * (rings as f64).powi(2)

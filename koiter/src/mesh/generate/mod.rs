@@ -1,11 +1,12 @@
 //! Surfaces made from numbers: sheets, tubes, cones, balls, boxes. Lengths in metres, normals outward (or up, +z).
 //!
 //! Everything is centred at the origin with z as its axis; exceptions are the cone, whose base lies at
-//! z = 0, and patches of cylinders and spheres.
+//! z = 0, the hat, which stands there, and patches of cylinders and spheres.
 
 mod corrugated;
 mod delaunay;
 pub mod face_count;
+mod hat;
 mod inset_cap;
 mod irregular;
 mod patch;
@@ -20,6 +21,7 @@ mod vee;
 
 pub use corrugated::{Corrugation, corrugated_tube};
 pub use delaunay::delaunay;
+pub use hat::{HatSize, hat};
 pub use inset_cap::inset_cap;
 pub use irregular::{IRREGULAR_MIN_ANGLE_DEGREES, irregular};
 pub use patch::{cylinder_panel, sphere_zone};

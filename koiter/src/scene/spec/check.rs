@@ -136,7 +136,7 @@ fn check_mesh(path: &str, mesh: &MeshSpec) -> Checked {
     exactly_one(
         path,
         &mesh.given_shapes(),
-        "file, grid, irregular, disc, cylinder, cone, icosphere, torus, cap, panel, zone, vee",
+        "file, grid, irregular, disc, cylinder, cone, icosphere, torus, cap, panel, zone, vee, hat",
     )?;
     if mesh.scale == 0.0 {
         return Err(error(

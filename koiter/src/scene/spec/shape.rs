@@ -45,6 +45,9 @@ pub struct MeshSpec {
     /// Sheet folded along its middle line.
     #[serde(default)]
     pub vee: Option<VeeSpec>,
+    /// Crown with a brim.
+    #[serde(default)]
+    pub hat: Option<HatSpec>,
     /// Unit of the file's numbers.
     #[serde(default)]
     pub units: Units,
@@ -88,6 +91,7 @@ impl MeshSpec {
             ("panel", self.panel.is_some()),
             ("zone", self.zone.is_some()),
             ("vee", self.vee.is_some()),
+            ("hat", self.hat.is_some()),
         ]
         .into_iter()
         .filter_map(|(name, given)| given.then_some(name))
@@ -338,6 +342,25 @@ pub struct VeeSpec {
     pub along: usize,
     /// Cells across each side.
     pub across: usize,
+}
+
+/// Crown with a brim, along z; it stands on its rim at z = 0.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HatSpec {
+    /// Radius of the crown at its foot [m].
+    pub radius: f64,
+    /// Height of the crown above its foot [m].
+    pub height: f64,
+    /// Width of the brim, seen from above [m].
+    pub brim: f64,
+    /// By how much the brim falls outwards, over its width; below 1.
+    #[serde(default)]
+    pub slope: f64,
+    /// Cells around.
+    pub around: usize,
+    /// Rings of triangles from the rim to the top.
+    pub rings: usize,
 }
 
 /// Half-space.

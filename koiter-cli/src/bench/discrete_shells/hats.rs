@@ -1,0 +1,237 @@
+//! Hats that fall on a floor: Figure 1. Impact, compression and rebound; energy is kept, or damped.
+//!
+//! The reference has a floor of springs and explicit steps, and the curve of its crown is not known: its figures stand beside
+//! ours, and the gates are what does not depend on these.
+
+use koiter::Vec3;
+
+use super::gates::{Gate, Gates};
+use super::run::{Trace, energy, keep, shipped};
+use crate::bench::published::rows;
+use crate::failure::Failure;
+
+/// Of the energy at the impact.
+const ENERGY_TOLERANCE: f64 = 1e-3;
+/// From the first touch to the lowest point of the centre [s]: about 7 ms.
+const COMPRESSION: [f64; 2] = [5e-3, 1e-2];
+/// Share of the energy at the impact that damping has taken by 0.35 s after it, at least.
+const LOSS: f64 = 0.4;
+/// Time by which the undamped hats have left the floor [s].
+const UNDAMPED_END: f64 = 0.3;
+/// 0.35 s after the impact.
+const DAMPED_END: f64 = 0.597;
+/// The height from which they fall [m].
+const DROP: f64 = 0.3;
+
+/// What a hat does.
+#[derive(Default)]
+struct Fall {
+    /// When it first touches the floor [s].
+    touch: f64,
+    /// Kinetic energy then [J].
+    impact: f64,
+    /// Lowest height of the centre of mass [m] and when [s].
+    lowest: [f64; 2],
+    /// Least height of the top above the foot of the crown [m].
+    crown: f64,
+    /// Largest difference of heights along the rim [m].
+    waviness: f64,
+    /// Largest energy of membrane and bending [J].
+    stored: f64,
+    /// Height to which the centre of mass will rise by its speed at the end [m].
+    rise: f64,
+    /// Largest change of energy, and the change at the end [J].
+    gains: [f64; 2],
+}
+
+pub(super) fn check(gates: &mut Gates) -> Result<(), Failure> {
+    let table = include_str!("../../../../benchmarks/discrete-shells/hats.csv");
+    let mut crowns: Vec<f64> = Vec::new();
+    for row in rows(table) {
+        let name = row[0];
+        let number = |k: usize| row[k].parse::<f64>().unwrap_or(f64::NAN);
+        let is_damped = number(1) > 0.0;
+        let fall = match is_damped {
+            false => fall(name, &["steps=fine"], UNDAMPED_END)?,
+            true => fall(
+                name,
+                &["damping=hinges", "phase.rebound.end=0.6"],
+                DAMPED_END,
+            )?,
+        };
+        let case = format!("hats, {name}{}", if is_damped { ", damped" } else { "" });
+        // Free fall to where the barrier begins.
+        let touch = (2.0 * (DROP - 2e-3) / 9.81f64).sqrt();
+        gates.check(
+            &case,
+            "first touch",
+            "s",
+            fall.touch,
+            Gate::Near(touch, 1e-3),
+        );
+        let compression = fall.lowest[1] - fall.touch;
+        let [least, most] = COMPRESSION;
+        gates.check(
+            &case,
+            "from there to the lowest centre",
+            "s",
+            compression,
+            Gate::Between(least, most),
+        );
+        let rebound = (fall.rise - fall.lowest[0]) / DROP;
+        gates.check(&case, "rebound by drop", "", rebound, Gate::Above(0.0));
+        gates.check(
+            &case,
+            "the same in the reference",
+            "",
+            rebound,
+            Gate::Beside(number(5)),
+        );
+        gates.check(
+            &case,
+            "least height of the crown",
+            "m",
+            fall.crown,
+            Gate::Beside(1e-2 * number(2)),
+        );
+        gates.check(
+            &case,
+            "largest waviness of the rim",
+            "m",
+            fall.waviness,
+            Gate::Beside(1e-2 * number(3)),
+        );
+        let stored = fall.stored / fall.impact;
+        gates.check(
+            &case,
+            "largest stored energy by that of the impact",
+            "",
+            stored,
+            Gate::Beside(number(4)),
+        );
+        let [largest, last] = fall.gains.map(|gain| gain / fall.impact);
+        if is_damped {
+            gates.check(
+                &case,
+                "energy lost by 0.35 s, by that of the impact",
+                "",
+                -last,
+                Gate::Above(LOSS),
+            );
+            continue;
+        }
+        gates.check(
+            &case,
+            "largest change of energy",
+            "",
+            largest,
+            Gate::Below(ENERGY_TOLERANCE),
+        );
+        if let Some(softer) = crowns.last() {
+            gates.check(
+                &case,
+                "crown by that of the softer",
+                "",
+                fall.crown / softer,
+                Gate::Above(1.0),
+            );
+        }
+        crowns.push(fall.crown);
+    }
+    Ok(())
+}
+
+fn fall(name: &str, overrides: &[&str], until: f64) -> Result<Fall, Failure> {
+    let mut scene = shipped("hats", overrides)?;
+    keep(&mut scene.model, name)?;
+    let parts = Parts::of(&scene.model.shells[0].surface.positions);
+    let mut trace = Trace::new(scene.model)?;
+    let mut fall = Fall {
+        touch: f64::INFINITY,
+        lowest: [f64::INFINITY, 0.0],
+        crown: f64::INFINITY,
+        ..Fall::default()
+    };
+    trace.run(&scene.timeline, until, |trace, report| {
+        let positions = trace.simulation.shell_positions(0);
+        if report.contacts > 0 && fall.touch.is_infinite() {
+            (fall.touch, fall.impact) = (report.time, trace.kinetic);
+        }
+        let height = center(trace, &positions);
+        // Before the second bounce.
+        if height < fall.lowest[0] && report.time < UNDAMPED_END {
+            fall.lowest = [height, report.time];
+        }
+        fall.crown = fall.crown.min(parts.crown(&positions));
+        fall.waviness = fall.waviness.max(parts.waviness(&positions));
+        let stored = energy(&trace.simulation, "membrane") + energy(&trace.simulation, "bending");
+        fall.stored = fall.stored.max(stored);
+        if report.time <= UNDAMPED_END {
+            let speed = center(trace, &trace.simulation.shell_velocities(0));
+            fall.rise = height + speed * speed.max(0.0) / (2.0 * 9.81);
+        }
+    })?;
+    let last = trace.gains.last().copied().unwrap_or(f64::NAN);
+    fall.gains = [trace.largest_gain(), last];
+    Ok(fall)
+}
+
+/// The vertical component of the mean by mass.
+fn center(trace: &Trace, values: &[Vec3]) -> f64 {
+    let masses = trace.simulation.masses();
+    let (mut sum, mut mass) = (0.0, 0.0);
+    for (v, value) in values.iter().enumerate() {
+        sum += masses[3 * v] * value.z;
+        mass += masses[3 * v];
+    }
+    sum / mass
+}
+
+/// Vertices of a hat by where they are on it.
+struct Parts {
+    rim: Vec<usize>,
+    foot: Vec<usize>,
+    top: usize,
+}
+
+impl Parts {
+    fn of(start: &[Vec3]) -> Self {
+        let top = start.len() - 1;
+        let axis = start[top].xy();
+        let radius = |v: usize| (start[v].xy() - axis).norm();
+        let on_ring = |r: f64| (0..top).filter(|&v| (radius(v) - r).abs() < 1e-9).collect();
+        Self {
+            rim: on_ring(0.15),
+            foot: on_ring(0.09),
+            top,
+        }
+    }
+
+    fn crown(&self, positions: &[Vec3]) -> f64 {
+        let foot: f64 = self.foot.iter().map(|&v| positions[v].z).sum();
+        positions[self.top].z - foot / self.foot.len() as f64
+    }
+
+    fn waviness(&self, positions: &[Vec3]) -> f64 {
+        let heights = || self.rim.iter().map(|&v| positions[v].z);
+        heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_parts_of_every_hat_are_found() {
+        for name in ["floppy", "medium", "stiff"] {
+            let mut scene = shipped("hats", &[]).unwrap();
+            keep(&mut scene.model, name).unwrap();
+            let positions = &scene.model.shells[0].surface.positions;
+            let parts = Parts::of(positions);
+            assert_eq!((parts.rim.len(), parts.foot.len()), (36, 36));
+            assert!((parts.crown(positions) - 0.11).abs() < 1e-12);
+            assert!(parts.waviness(positions) < 1e-12);
+        }
+    }
+}
