@@ -55,7 +55,11 @@ pub(super) fn check(gates: &mut Gates) -> Result<(), Failure> {
             false => fall(name, &["steps=fine"], UNDAMPED_END)?,
             true => fall(
                 name,
-                &["damping=hinges", "phase.rebound.end=0.6"],
+                &[
+                    "damping=hinges",
+                    "phase.rebound.end=0.6",
+                    "phase.rebound.dt=2e-4",
+                ],
                 DAMPED_END,
             )?,
         };

@@ -265,6 +265,17 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_sheet_curls_and_creases_as_in_the_reference() {
+        let mut gates = Gates::new();
+        check(&mut gates).unwrap();
+        let failures = &gates.table.failures;
+        assert!(failures.is_empty(), "{failures:?}");
+        let rows = gates.table.json()["rows"].as_array().map_or(0, Vec::len);
+        // Six radii, three figures of the curl and its comparison, two of each crease, two squares, four of the pull.
+        assert_eq!(rows, 6 + 4 + 2 * 5 + 2 + 4);
+    }
+
+    #[test]
     fn the_circle_through_points_is_found() {
         let points = (0..9).map(|k| {
             let (sin, cos) = (0.1 * f64::from(k) - 0.3).sin_cos();
