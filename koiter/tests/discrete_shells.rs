@@ -166,8 +166,9 @@ fn explicit_newmark_conserves_both_momenta_and_energy_up_to_the_square_of_the_st
 
 #[test]
 fn implicit_newmark_conserves_the_modified_angular_momentum() {
+    // Steps that are cut for want of accuracy would change it: see the line search of Newton's method.
     for dt in [1e-3, 5e-4] {
-        let [linear, angular, modified, _] = drifts(0.25, dt, 0.1);
+        let [linear, angular, modified, _] = drifts(0.25, dt, 0.5);
         assert!(linear < 1e-10 && modified < 1e-10, "{linear} {modified}");
         assert!(angular > 1e-8, "{angular}");
     }

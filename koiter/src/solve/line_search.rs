@@ -2,7 +2,9 @@
 //!
 //! First as far as contact allows ([`Energy::max_step`]), then half of it while an energy is not defined there, then half
 //! while the sum of energies does not decrease enough (Armijo). Where progress is slow the search also looks beyond the
-//! Newton step: clamped curvature makes steps too short by a constant factor.
+//! Newton step: clamped curvature makes steps too short by a constant factor. Near a minimum, where values differ by round-off
+//! alone, slopes decide (W. Hager, H. Zhang, "A new conjugate gradient method with guaranteed descent and an efficient line
+//! search", 2005).
 
 use std::time::Instant;
 
@@ -15,6 +17,13 @@ const MAX_HALVINGS: usize = 60;
 
 /// Armijo's fraction of the predicted decrease.
 const SUFFICIENT_DECREASE: f64 = 1e-4;
+
+/// Where less than this share of the energies is to be gained, their values do not tell whether it is: a length over its rest
+/// length loses as many digits as the strain is small. Slopes do, since a gradient is small where its terms cancel.
+const UNTOLD: f64 = 1e-11;
+
+/// What is left of the slope at the end of a step that is taken for it: nothing, but for round-off, if the step is Newton's.
+const FLAT: f64 = 0.5;
 
 /// What to search along.
 pub(super) struct SearchLine<'a> {
@@ -123,6 +132,16 @@ fn search(
                     stopped_by: by_energy.then(|| stopped_by(undefined)),
                 };
             }
+            Ok(value)
+                if is_untold(value, before, magnitude, steps, line)
+                    && flattens(problem, line, &trial) =>
+            {
+                q.copy_from_slice(&trial);
+                return Taken {
+                    steps,
+                    stopped_by: by_energy.then(|| stopped_by(undefined)),
+                };
+            }
             Ok(_) => undefined = None,
             Err(energy) => undefined = Some((energy, trial)),
         }
@@ -146,6 +165,27 @@ fn stopped_by(undefined: Option<(&dyn Energy, Vec<f64>)>) -> Limiter {
             place: String::new(),
         },
     }
+}
+
+/// Whether the values of the energies say nothing about this part of a step.
+fn is_untold(value: f64, before: f64, magnitude: f64, steps: f64, line: &SearchLine<'_>) -> bool {
+    let least = UNTOLD * magnitude;
+    let expected = -steps * line.slope;
+    !line.moving && (0.0..least).contains(&expected) && (value - before).abs() < least
+}
+
+/// Whether the energies rise and fall much less along the line at a point of it than at its start.
+fn flattens(problem: &Problem<'_>, line: &SearchLine<'_>, trial: &[f64]) -> bool {
+    let mut gradient = vec![0.0; trial.len()];
+    for energy in &problem.energies {
+        energy.add_gradient(trial, &mut gradient);
+    }
+    let slope: f64 = gradient
+        .iter()
+        .zip(line.direction)
+        .map(|(g, d)| g * d)
+        .sum();
+    slope.abs() <= FLAT * line.slope.abs()
 }
 
 fn decreases(value: f64, before: f64, steps: f64, line: &SearchLine<'_>) -> bool {

@@ -62,6 +62,8 @@ pub(super) struct Trace {
     pub(super) kinetic: f64,
     /// Energy less that at the start, after every step [J].
     pub(super) gains: Vec<f64>,
+    /// Steps that were taken in parts.
+    pub(super) cut: usize,
 }
 
 impl Trace {
@@ -73,6 +75,7 @@ impl Trace {
             start,
             kinetic: 0.0,
             gains: Vec::new(),
+            cut: 0,
         })
     }
 
@@ -83,6 +86,7 @@ impl Trace {
             let step = self.simulation.step_count();
             return Err(Failure::run(format!("step {step} did not converge")));
         }
+        self.cut += usize::from(report.parts > 1);
         self.kinetic = self.kinetic.max(energy(&self.simulation, "kinetic"));
         self.gains.push(total(&self.simulation) - self.start);
         Ok(report)
