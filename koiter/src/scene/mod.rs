@@ -34,8 +34,8 @@ mod vertex_directors;
 
 #[cfg(feature = "serde")]
 mod build;
-#[cfg(feature = "serde")]
 mod damping;
+#[cfg(feature = "serde")]
 mod decode;
 #[cfg(feature = "serde")]
 mod document;
@@ -43,8 +43,8 @@ mod document;
 mod error;
 #[cfg(feature = "serde")]
 mod face_file;
-#[cfg(feature = "serde")]
 mod membrane_models;
+#[cfg(feature = "serde")]
 mod memory;
 #[cfg(feature = "serde")]
 mod nearest;
