@@ -1,6 +1,7 @@
 //! What can be typed.
 
 mod aids;
+mod bezier;
 mod modes;
 mod scenes;
 mod studies;
@@ -12,6 +13,7 @@ pub(crate) use aids::{
     Template,
 };
 
+pub(crate) use bezier::BezierArguments;
 pub(crate) use modes::ModesArguments;
 pub(crate) use scenes::{ScenesArguments, Variation};
 pub(crate) use studies::{
@@ -327,6 +329,8 @@ pub(crate) enum BenchSubject {
     DiscreteShells(DiscreteShellsArguments),
     /// When a heavy plate that stands on edge buckles sideways: "Better Bending", Figure 26
     LateralBuckling(LateralBucklingArguments),
+    /// Bézier shells: the roof and the hemisphere for every element, beside published figures; frames a second
+    Bezier(BezierArguments),
 }
 
 #[derive(Debug, Args)]

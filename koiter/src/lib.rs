@@ -3,6 +3,7 @@
 
 pub mod assembly;
 pub mod audit;
+pub mod bezier;
 pub mod contact;
 pub mod energy;
 pub mod geometry;

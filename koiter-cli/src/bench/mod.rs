@@ -3,6 +3,8 @@
 //! Every time is the fastest of a few repetitions: machines are noisy, and noise only adds.
 
 mod assembly;
+mod bezier;
+mod bezier_speed;
 mod contact;
 mod convergence;
 mod creased_vee;
@@ -41,6 +43,8 @@ pub(crate) fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         BenchSubject::Models(options) => models::bench(options),
         BenchSubject::DiscreteShells(options) => discrete_shells::bench(options),
         BenchSubject::LateralBuckling(options) => lateral_buckling::bench(options),
+        BenchSubject::Bezier(options) if options.speed => bezier_speed::bench(options),
+        BenchSubject::Bezier(options) => bezier::bench(options),
     }?;
     if arguments.json {
         say!("{}", table.json());

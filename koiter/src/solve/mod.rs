@@ -1,6 +1,7 @@
 //! Minimising a sum of energies: sparse factorisation, Newton's method, line search. Knows no shells and no contact.
 
 mod cholesky;
+mod conjugate_gradients;
 mod eigen;
 mod ldlt;
 mod limits;
@@ -16,6 +17,7 @@ mod trust_region;
 mod workspace;
 
 pub use cholesky::{LinearSolver, NotPositiveDefinite, SparseCholesky};
+pub use conjugate_gradients::{ConjugateGradients, NodeBlocks, conjugate_gradients};
 pub use eigen::{EigenNotConverged, EigenPair, largest_eigenpairs};
 pub use ldlt::SignedCholesky;
 pub use limits::{DECREASE, Limit, Limiter};
