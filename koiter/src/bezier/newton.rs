@@ -149,6 +149,20 @@ impl Solver {
         pose: &mut Pose,
         limits: &NewtonLimits,
     ) -> Result<NewtonOutcome, BezierError> {
+        // Inside the pool, so that its many short loops start without waking other threads.
+        #[cfg(feature = "parallel")]
+        return rayon::scope(|_| self.minimize_in_pool(potentials, supports, pose, limits));
+        #[cfg(not(feature = "parallel"))]
+        self.minimize_in_pool(potentials, supports, pose, limits)
+    }
+
+    fn minimize_in_pool(
+        &mut self,
+        potentials: &mut [&mut dyn Potential],
+        supports: &Supports,
+        pose: &mut Pose,
+        limits: &NewtonLimits,
+    ) -> Result<NewtonOutcome, BezierError> {
         let mut outcome = NewtonOutcome::default();
         let has_energy = potentials.iter().all(|p| p.has_energy());
         let mut tangent = limits.tangent;
