@@ -141,7 +141,7 @@ impl Measured {
             name.into(),
             self.kind.name().into(),
             self.cells.into(),
-            Cell::Digits(self.value),
+            Cell::Precise(self.value),
         ];
         match self.published() {
             Some(published) => {
@@ -168,7 +168,7 @@ impl Measured {
                     ));
                 }
                 row.extend([
-                    Cell::Digits(published.value),
+                    Cell::Precise(published.value),
                     Cell::Figure(100.0 * deviation),
                     verdict.into(),
                 ]);
@@ -227,8 +227,8 @@ fn large(kind: ElementKind, table: &mut Table) -> Result<(), Failure> {
             name.into(),
             kind.name().into(),
             LARGE_CELLS.into(),
-            Cell::Digits(path[path.len() - 1][column]),
-            Cell::Digits(last),
+            Cell::Precise(path[path.len() - 1][column]),
+            Cell::Precise(last),
             Cell::Figure(100.0 * deviation),
             verdict.into(),
             seconds.into(),

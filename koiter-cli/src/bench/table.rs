@@ -20,13 +20,8 @@ pub(super) enum Cell {
     Text(String),
     Count(usize),
     Figure(f64),
-<<<<<<< HEAD
     /// Four digits, whatever its size.
     Precise(f64),
-=======
-    /// A figure that is compared: five digits after the point.
-    Digits(f64),
->>>>>>> 42d61d8 (Bézier shells: elements, statics, steps in time, mapped surface, cuts and sutures)
 }
 
 impl From<usize> for Cell {
@@ -52,7 +47,6 @@ impl fmt::Display for Cell {
         match self {
             Self::Text(text) => f.pad(text),
             Self::Count(count) => f.pad(&count.to_string()),
-            Self::Digits(figure) => f.pad(&format!("{figure:.5}")),
             // Three digits: timings have no more.
             Self::Figure(figure) if figure.abs() >= 100.0 => f.pad(&format!("{figure:.0}")),
             Self::Figure(figure) if figure.abs() >= 10.0 => f.pad(&format!("{figure:.1}")),
@@ -103,11 +97,7 @@ impl Table {
         let value = |cell: &Cell| match cell {
             Cell::Text(text) => json!(text),
             Cell::Count(count) => json!(count),
-<<<<<<< HEAD
             Cell::Figure(figure) | Cell::Precise(figure) => json!(figure),
-=======
-            Cell::Figure(figure) | Cell::Digits(figure) => json!(figure),
->>>>>>> 42d61d8 (Bézier shells: elements, statics, steps in time, mapped surface, cuts and sutures)
         };
         let rows: Vec<Map<String, Value>> = (self.rows.iter())
             .map(|row| {
