@@ -1,6 +1,7 @@
 // What the page takes for results of several sizes, in headless Chromium without a graphics processor, at 1280 × 720.
 
-import { readFileSync } from "node:fs";
+import { readdirSync, readFileSync } from "node:fs";
+import { loadavg } from "node:os";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
 import type { Browser, Page } from "playwright-core";
@@ -60,6 +61,35 @@ async function play(page: Page): Promise<{ frames: number; pictures: number; pix
   }, PLAYED);
 }
 
+/**
+ * Processor time of the browser's processes so far [ms], where the system tells it (Linux). On a machine that does other things too
+ * it says more than the clock: so many milliseconds of one core a picture takes.
+ */
+function processorTime(): number {
+  let ticks = 0;
+  try {
+    for (const pid of readdirSync("/proc").filter((name) => /^\d+$/.test(name))) {
+      const [, name, rest] = /^\d+ \((.*)\) (.*)$/s.exec(readStat(pid)) ?? [];
+      if (name?.startsWith("chrom")) {
+        const words = rest.split(" ");
+        ticks += Number(words[11]) + Number(words[12]);
+      }
+    }
+  } catch {
+    return NaN;
+  }
+  return 10 * ticks;
+}
+
+/** Empty for a process that has just ended. */
+function readStat(pid: string): string {
+  try {
+    return readFileSync(`/proc/${pid}/stat`, "utf8");
+  } catch {
+    return "";
+  }
+}
+
 /** Median and slowest time from a move of the slider to the picture [ms]. */
 async function scrub(page: Page): Promise<{ median: number; slowest: number }> {
   return page.evaluate(async (count) => {
@@ -99,7 +129,11 @@ async function measure(browser: Browser, folder: string, wanted: Case): Promise<
   const faces = makeResult({ folder: result, ...wanted });
   const served = await serve(result);
   const { page, seconds } = await timeToOpen(browser, served.url);
+  // Shaders are compiled, frames read: the second time is what people see.
+  await play(page);
+  const before = processorTime();
   const played = await play(page);
+  const processor = processorTime() - before;
   const scrubbed = await scrub(page);
   const megabytes = await memory(page);
   console.log(
@@ -110,6 +144,7 @@ async function measure(browser: Browser, folder: string, wanted: Case): Promise<
       open_seconds: Number(seconds.toFixed(2)),
       frames_a_second: Number(played.frames.toFixed(1)),
       pictures_a_second: Number(played.pictures.toFixed(1)),
+      processor_ms_a_picture: Math.round(processor / Math.max(1, (played.pictures * PLAYED) / 1000)),
       pixels_across: played.pixels,
       scrub_median_ms: Math.round(scrubbed.median),
       scrub_slowest_ms: Math.round(scrubbed.slowest),
@@ -140,3 +175,4 @@ try {
   remove(folder);
 }
 bundleSize();
+console.log(JSON.stringify({ case: "machine", load: loadavg().map((load) => Number(load.toFixed(1))) }));

@@ -19,7 +19,7 @@ export async function openBrowser(): Promise<Browser> {
   return chromium.launch({
     executablePath: path,
     // Pictures without a graphics processor; containers have neither a sandbox nor much shared memory.
-    args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox", "--disable-dev-shm-usage"],
+    args: ["--disable-gpu", "--enable-unsafe-swiftshader", "--no-sandbox", "--disable-dev-shm-usage"],
   });
 }
 

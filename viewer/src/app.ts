@@ -7,7 +7,8 @@ import { Player } from "./player";
 import { Result } from "./result";
 import { isMap, type MapName } from "./scene/color-map";
 import { include } from "./scene/mesh-math";
-import { type Shading, ValueColors } from "./scene/part-view";
+import type { Shading } from "./scene/part-view";
+import { ValueColors } from "./scene/shading";
 import { Viewport } from "./scene/viewport";
 import type { Preset } from "./scene/views";
 import { el, themeColor } from "./ui/dom";
@@ -263,6 +264,7 @@ export class App {
     const [back, obstacles] = [themeColor("back"), themeColor("obstacle")];
     this.forStages((stage) => stage.setBackground(back, obstacles));
     this.plots.redraw();
+    this.picks.redraw();
   }
 
   private forStages(act: (stage: Result["stage"]) => void): void {

@@ -5,7 +5,7 @@ import { FrameCache } from "./data/frame-cache";
 import type { Columns, FrameData, Range, RunState, Source } from "./data/source";
 import { frameAt, steadyTimes } from "./data/timeline";
 import { coveringRange, distances } from "./scene/mesh-math";
-import type { ValueColors } from "./scene/part-view";
+import type { ValueColors } from "./scene/shading";
 import { Stage } from "./scene/stage";
 
 /** What colours mean: `parts`, `field:NAME`, `displacement`, `height`, or `distance` to another result. */

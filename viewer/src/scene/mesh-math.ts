@@ -30,7 +30,8 @@ export function vertexNormals(positions: Float32Array, faces: Uint32Array, out: 
     out[c + 2] += z;
   }
   for (let v = 0; v < out.length; v += 3) {
-    const length = Math.hypot(out[v], out[v + 1], out[v + 2]);
+    // Not `Math.hypot`, which takes ten times as long.
+    const length = Math.sqrt(out[v] ** 2 + out[v + 1] ** 2 + out[v + 2] ** 2);
     const scale = length > 0 ? 1 / length : 0;
     out[v] *= scale;
     out[v + 1] *= scale;
@@ -61,7 +62,7 @@ export function cornerNormals(cornerPositions: Float32Array, out: Float32Array):
     const x = uy * vz - uz * vy;
     const y = uz * vx - ux * vz;
     const z = ux * vy - uy * vx;
-    const length = Math.hypot(x, y, z);
+    const length = Math.sqrt(x * x + y * y + z * z);
     const scale = length > 0 ? 1 / length : 0;
     for (let corner = k; corner < k + 9; corner += 3) {
       out[corner] = x * scale;
@@ -135,7 +136,10 @@ export function include(box: Box, positions: Float32Array, start: number, end: n
 export function distances(a: Float32Array, b: Float32Array): Float32Array {
   const out = new Float32Array(a.length / 3);
   for (let v = 0; v < out.length; v++) {
-    out[v] = Math.hypot(a[3 * v] - b[3 * v], a[3 * v + 1] - b[3 * v + 1], a[3 * v + 2] - b[3 * v + 2]);
+    const x = a[3 * v] - b[3 * v];
+    const y = a[3 * v + 1] - b[3 * v + 1];
+    const z = a[3 * v + 2] - b[3 * v + 2];
+    out[v] = Math.sqrt(x * x + y * y + z * z);
   }
   return out;
 }

@@ -3,59 +3,29 @@
 import {
   BufferAttribute,
   BufferGeometry,
-  DataTexture,
-  DoubleSide,
   DynamicDrawUsage,
   Group,
   LineBasicMaterial,
   LineSegments,
   Mesh,
-  MeshLambertMaterial,
   type Plane,
-  SRGBColorSpace,
+  type ShaderMaterial,
   Sphere,
   Vector3,
 } from "three";
 import type { Part } from "../data/source";
-import { colorBytes, type MapName } from "./color-map";
 import { cornerNormals, corners, edges, vertexNormals } from "./mesh-math";
+import { type Lighting, NO_VALUE, screenColor, surfaceMaterial, type ValueColors } from "./shading";
 
 /** Smooth: light and values run over edges. Faces: each face has its own, as computed. */
 export type Shading = "smooth" | "faces";
-
-/** What colours mean, shared by all parts. */
-export class ValueColors {
-  private readonly texture: DataTexture;
-  readonly uniforms: Record<string, { value: unknown }>;
-
-  constructor() {
-    this.texture = new DataTexture(colorBytes("viridis", 256), 256, 1);
-    this.texture.colorSpace = SRGBColorSpace;
-    this.texture.needsUpdate = true;
-    this.uniforms = {
-      valueMap: { value: this.texture },
-      valueLow: { value: 0 },
-      valueScale: { value: 1 },
-    };
-  }
-
-  set(map: MapName, low: number, high: number): void {
-    (this.texture.image.data as Uint8Array).set(colorBytes(map, 256));
-    this.texture.needsUpdate = true;
-    this.uniforms.valueLow.value = low;
-    this.uniforms.valueScale.value = high > low ? 1 / (high - low) : 1;
-  }
-}
-
-/** Stands for NaN, which graphics processors may treat as they like. */
-const NO_VALUE = -1e38;
 
 export class PartView {
   readonly group = new Group();
   private readonly faces: Uint32Array;
   private readonly numVertices: number;
   private readonly positions: BufferAttribute;
-  private surface: Mesh<BufferGeometry, MeshLambertMaterial>;
+  private surface: Mesh<BufferGeometry, ShaderMaterial>;
   private wires: LineSegments | null = null;
   private hasValues = false;
   private shading: Shading = "smooth";
@@ -65,6 +35,7 @@ export class PartView {
     allFaces: Uint32Array,
     private color: string,
     private readonly colors: ValueColors,
+    private readonly lighting: Lighting,
     private readonly planes: Plane[],
   ) {
     const offset = part.vertices.start;
@@ -140,7 +111,7 @@ export class PartView {
 
   setColor(color: string): void {
     this.color = color;
-    this.surface.material.color.set(color);
+    this.surface.material.uniforms.baseColor.value = screenColor(color);
   }
 
   setShadows(shown: boolean): void {
@@ -181,7 +152,7 @@ export class PartView {
     normal.needsUpdate = true;
   }
 
-  private makeSurface(): Mesh<BufferGeometry, MeshLambertMaterial> {
+  private makeSurface(): Mesh<BufferGeometry, ShaderMaterial> {
     const geometry = new BufferGeometry();
     const isSmooth = this.shading === "smooth";
     const count = isSmooth ? this.numVertices : this.faces.length;
@@ -193,16 +164,8 @@ export class PartView {
       geometry.setIndex(new BufferAttribute(this.faces, 1));
     }
     geometry.boundingSphere = everywhere();
-    const material = new MeshLambertMaterial({
-      color: this.color,
-      side: DoubleSide,
-      polygonOffset: this.wires?.visible === true,
-      polygonOffsetFactor: 1,
-      polygonOffsetUnits: 1,
-      clippingPlanes: this.planes,
-      clipShadows: true,
-    });
-    colorByValue(material, this.colors);
+    const material = surfaceMaterial(this.color, this.colors, this.lighting, this.planes);
+    material.polygonOffset = this.wires?.visible === true;
     return new Mesh(geometry, material);
   }
 }
@@ -214,28 +177,4 @@ function dynamic(array: Float32Array, size: number): BufferAttribute {
 /** Parts move every frame and are nearly always in view: they are always drawn. */
 function everywhere(): Sphere {
   return new Sphere(new Vector3(), Infinity);
-}
-
-/** With the define `USE_VALUE`, colours come from the attribute `value`. */
-function colorByValue(material: MeshLambertMaterial, colors: ValueColors): void {
-  material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, colors.uniforms);
-    shader.vertexShader = shader.vertexShader
-      .replace("#include <common>", `#include <common>\n#ifdef USE_VALUE\nattribute float value;\nvarying float vValue;\n#endif`)
-      .replace("#include <begin_vertex>", `#include <begin_vertex>\n#ifdef USE_VALUE\nvValue = value;\n#endif`);
-    shader.fragmentShader = shader.fragmentShader
-      .replace(
-        "#include <common>",
-        `#include <common>\n#ifdef USE_VALUE\nvarying float vValue;\nuniform sampler2D valueMap;\nuniform float valueLow;\nuniform float valueScale;\n#endif`,
-      )
-      .replace(
-        "#include <color_fragment>",
-        `#include <color_fragment>
-#ifdef USE_VALUE
-  float valueShare = clamp((vValue - valueLow) * valueScale, 0.0, 1.0);
-  vec3 valueColor = texture2D(valueMap, vec2((valueShare * 255.0 + 0.5) / 256.0, 0.5)).rgb;
-  diffuseColor.rgb = vValue < -1e37 ? vec3(0.32) : valueColor;
-#endif`,
-      );
-  };
 }

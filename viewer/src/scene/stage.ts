@@ -4,7 +4,6 @@ import {
   type Camera,
   Color,
   DirectionalLight,
-  HemisphereLight,
   Mesh,
   MeshBasicMaterial,
   type Plane,
@@ -15,8 +14,9 @@ import {
 import type { Axis, FrameData, Info, Part } from "../data/source";
 import { OBSTACLE, SHELLS } from "./color-map";
 import { type Box, emptyBox, faceToVertex, include } from "./mesh-math";
-import { PartView, type Shading, type ValueColors } from "./part-view";
+import { PartView, type Shading } from "./part-view";
 import { pick, type Hit, type Vector } from "./pick";
+import { Lighting, type ValueColors } from "./shading";
 import { upVector } from "./views";
 
 const AXES = { x: 0, y: 1, z: 2 } as const;
@@ -24,11 +24,12 @@ const AXES = { x: 0, y: 1, z: 2 } as const;
 export class Stage {
   readonly scene = new Scene();
   readonly parts: PartView[];
-  private readonly lamp = new DirectionalLight(0xffffff, 2.2);
-  private readonly sky = new HemisphereLight(0xffffff, 0x8d8a86, 1.5);
+  private readonly lamp = new DirectionalLight();
+  private readonly lighting = new Lighting();
   private readonly marker: Mesh;
   private marked: number | null = null;
   private shading: Shading = "smooth";
+  private hasShadows = false;
   /** The frame that is shown. */
   current: FrameData | null = null;
 
@@ -41,19 +42,18 @@ export class Stage {
     let shells = 0;
     this.parts = info.parts.map((part) => {
       const color = part.kind === "obstacle" ? OBSTACLE : SHELLS[shells++ % SHELLS.length];
-      return new PartView(part, faces, color, colors, planes);
+      return new PartView(part, faces, color, colors, this.lighting, planes);
     });
     for (const part of this.parts) {
       this.scene.add(part.group);
     }
-    this.sky.position.set(...upVector(info.up_axis));
-    this.lamp.shadow.mapSize.set(1024, 1024);
+    this.lighting.up.set(...upVector(info.up_axis));
     this.lamp.shadow.bias = -0.002;
     const material = new MeshBasicMaterial({ color: 0xd81b60, depthTest: false, transparent: true });
     this.marker = new Mesh(new SphereGeometry(1, 16, 12), material);
     this.marker.renderOrder = 1;
     this.marker.visible = false;
-    this.scene.add(this.lamp, this.lamp.target, this.sky, this.marker);
+    this.scene.add(this.lamp, this.lamp.target, this.marker);
   }
 
   /** Colours of what is behind the shells. */
@@ -94,10 +94,20 @@ export class Stage {
   }
 
   setShadows(shown: boolean): void {
+    this.hasShadows = shown;
     this.lamp.castShadow = shown;
     for (const part of this.parts) {
       part.setShadows(shown);
     }
+  }
+
+  /** Leaves shadows out for a while. */
+  allowShadows(allowed: boolean): void {
+    this.lamp.castShadow = this.hasShadows && allowed;
+  }
+
+  setShadowSize(size: number): void {
+    this.lamp.shadow.mapSize.set(size, size);
   }
 
   /** Puts the lamp above and to the left of the camera, so that shadows show what hides what. */
@@ -110,7 +120,8 @@ export class Stage {
     const vertical = new Vector3(...upVector(this.info.up_axis));
     const from = back.addScaledVector(right, -0.5).addScaledVector(up, 0.5).addScaledVector(vertical, 0.9);
     this.lamp.target.position.copy(center);
-    this.lamp.position.copy(center).addScaledVector(from.normalize(), 3 * radius);
+    this.lighting.lamp.copy(from.normalize());
+    this.lamp.position.copy(center).addScaledVector(from, 3 * radius);
     const lens = this.lamp.shadow.camera;
     lens.left = lens.bottom = -1.3 * radius;
     lens.right = lens.top = 1.3 * radius;

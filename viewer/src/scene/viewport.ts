@@ -10,24 +10,29 @@ import { fromDirection, type Preset, upVector } from "./views";
 
 /** Vertical field of view [degrees], as in pictures: a long lens. */
 const FIELD_OF_VIEW = 26;
-/** Where pictures come slower than this while things move [ms], fewer pixels are drawn until they stand still. */
-const SLOW = 50;
+/** Where pictures come slower than this while things move [ms], they are made simpler until things stand still. */
+const SLOW = 40;
+/** Steps to simpler pictures: the first leaves shadows out, each other draws fewer pixels, a third of each side at last. */
+const MOST_SIMPLE = 6;
+const COARSER = 1.25;
+const FRAMES_A_STEP = 12;
 
 export class Viewport {
   readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
   readonly section = new Plane(new Vector3(0, 0, -1), 0);
   readonly planes: Plane[] = [];
   private readonly renderer: WebGLRenderer;
+  /** Pixels along the sides of what the lamp sees. */
+  readonly shadowSize: number;
   private readonly controls: OrbitControls;
   private stages: Stage[] = [];
   private box: Box = { min: [-1, -1, -1], max: [1, 1, 1] };
   private isDirty = true;
-  /** Device pixels a CSS pixel, and by how much they are fewer while things move. */
-  private coarseness = 1;
+  /** Steps taken to simpler pictures. */
+  private simplicity = 0;
   private movedAt = 0;
-  /** Time between the browser's frames while things move, smoothed [ms]. */
-  private interval = 0;
-  private steppedAt = 0;
+  /** Since when so many frames were drawn, how long each took at the step before [ms], and whether steps still help. */
+  private pace = { since: 0, frames: 0, before: Infinity, isSettled: false };
   private size = { width: 0, height: 0, ratio: 0 };
   /** Called after each picture. */
   onDrawn: () => void = () => {};
@@ -38,7 +43,8 @@ export class Viewport {
 
   constructor(readonly canvas: HTMLCanvasElement) {
     const isSoftware = rendersInSoftware();
-    this.renderer = new WebGLRenderer({ canvas, antialias: !isSoftware, preserveDrawingBuffer: true });
+    this.renderer = new WebGLRenderer({ canvas, antialias: !isSoftware });
+    this.shadowSize = isSoftware ? 512 : 1024;
     this.renderer.localClippingEnabled = true;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = BasicShadowMap;
@@ -58,6 +64,7 @@ export class Viewport {
 
   setStages(stages: Stage[]): void {
     this.stages = stages;
+    stages.forEach((stage) => stage.setShadowSize(this.shadowSize));
     this.redraw();
   }
 
@@ -119,7 +126,7 @@ export class Viewport {
 
   /** Draws at once, with all pixels: for pictures. */
   drawFully(): void {
-    this.coarseness = 1;
+    this.simplicity = 0;
     this.draw();
     this.isDirty = false;
   }
@@ -132,8 +139,8 @@ export class Viewport {
   private step(): void {
     const now = performance.now();
     const isMoving = this.isPlaying || now - this.movedAt < 250;
-    if (!isMoving && this.coarseness > 1) {
-      this.coarseness = 1;
+    if (!isMoving && this.simplicity > 0) {
+      this.simplicity = 0;
       this.isDirty = true;
     }
     this.adapt(isMoving, now);
@@ -143,22 +150,37 @@ export class Viewport {
     }
   }
 
-  /** Browsers ask for the next frame when the last is drawn: this tells how long drawing takes. */
+  /**
+   * Browsers ask for the next frame when the last is drawn: this tells how long drawing takes. A step that does not help is
+   * taken back, and no other is tried until things have stood still: then something else takes the time.
+   */
   private adapt(isMoving: boolean, now: number): void {
-    const taken = now - this.steppedAt;
-    this.steppedAt = now;
-    // The first frame after a rest tells nothing.
-    this.interval = isMoving && taken < 1000 ? 0.8 * this.interval + 0.2 * taken : 0;
-    if (this.interval > SLOW && this.coarseness < 3) {
-      this.coarseness *= 1.3;
-      this.interval = 0;
+    if (!isMoving) {
+      this.pace = { since: now, frames: 0, before: Infinity, isSettled: false };
+      return;
     }
+    const { pace } = this;
+    pace.frames += 1;
+    if (pace.frames < FRAMES_A_STEP || pace.isSettled) {
+      return;
+    }
+    const interval = (now - pace.since) / pace.frames;
+    const hasHelped = interval < 0.9 * pace.before;
+    if (!hasHelped) {
+      this.simplicity -= 1;
+      pace.isSettled = true;
+    } else if (interval > SLOW && this.simplicity < MOST_SIMPLE) {
+      this.simplicity += 1;
+      pace.before = interval;
+    }
+    pace.since = now;
+    pace.frames = 0;
   }
 
   private draw(): void {
     const width = Math.max(1, this.canvas.clientWidth);
     const height = Math.max(1, this.canvas.clientHeight);
-    const ratio = Math.min(2, window.devicePixelRatio) / this.coarseness;
+    const ratio = Math.min(2, window.devicePixelRatio) / COARSER ** Math.max(0, this.simplicity - 1);
     const { size } = this;
     // Setting a size, even the same, makes a new canvas.
     if (size.width !== width || size.height !== height || size.ratio !== ratio) {
@@ -179,6 +201,7 @@ export class Viewport {
       const right = Math.floor(((k + 1) * width) / count);
       this.renderer.setViewport(left, 0, right - left, height);
       this.renderer.setScissor(left, 0, right - left, height);
+      stage.allowShadows(this.simplicity === 0);
       stage.light(this.camera, this.box);
       this.renderer.render(stage.scene, this.camera);
     });

@@ -40,6 +40,7 @@ export class PickPanel {
   /** Reads the history of what was picked. */
   async show(picked: Picked, frame: FrameData): Promise<void> {
     this.picked = picked;
+    this.history = {};
     this.element.open = true;
     this.update(frame);
     this.body.replaceChildren(this.table);
@@ -67,7 +68,7 @@ export class PickPanel {
       this.chosen = key;
       this.drawHistory();
     });
-    this.body.replaceChildren(this.table, labelled("History", select), this.plot.canvas);
+    this.body.replaceChildren(this.table, labelled("History", select), this.plot.element);
     this.drawHistory();
     this.element.scrollIntoView({ block: "nearest" });
   }
@@ -96,9 +97,25 @@ export class PickPanel {
     if (this.picked !== null) {
       this.time = time;
       this.plot.setTime(time);
+      this.tellPosition();
       this.table.querySelectorAll("tr.field").forEach((row) => row.remove());
       this.table.append(...this.fieldRows());
     }
+  }
+
+  redraw(): void {
+    this.plot.draw();
+  }
+
+  /** The position at this time, once the history is here. */
+  private tellPosition(): void {
+    const { x, y, z, time } = this.history;
+    const cell = this.table.rows[3]?.cells[1];
+    if (cell === undefined || time === undefined || x === undefined) {
+      return;
+    }
+    const index = Math.max(0, frameAt(time as number[], this.time + 1e-12));
+    cell.textContent = [x, y, z].map((values) => readable(values[index] ?? NaN)).join(", ");
   }
 
   private fieldRows(): HTMLTableRowElement[] {

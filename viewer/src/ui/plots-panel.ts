@@ -43,7 +43,7 @@ export class PlotsPanel {
       this.draw(known);
     });
     select.id = "figure";
-    this.body.replaceChildren(labelled("Figure", select), this.plot.canvas);
+    this.body.replaceChildren(labelled("Figure", select), this.plot.element);
     this.draw(known);
   }
 
