@@ -7,7 +7,7 @@ use std::str::FromStr;
 use koiter::Vec3;
 use koiter::energy::expression::{ElementKind, Names};
 use koiter::io::crc32;
-use koiter::io::read::MeshFormat;
+use koiter::io::read::{MeshFormat, parse_obj_quads, parse_png};
 use koiter::io::result::{Checkpoint, Frame, Manifest, decode_stats, decode_topology};
 use koiter::mesh::{OrientationPolicy, Surface, SurfaceOptions, UnreferencedPolicy};
 use koiter::scene::{MeshSource, Scene, SceneFile, UnreadableMesh};
@@ -23,6 +23,10 @@ pub enum Target {
     Stl,
     /// OFF, to a checked surface.
     Off,
+    /// Quads of an OBJ file, to a checked mesh.
+    Quads,
+    /// PNG, to a texture.
+    Texture,
     /// A scene, to a checked model. Lines that begin with `#set ` are overrides.
     Scene,
     /// The text of an energy, parsed.
@@ -41,11 +45,13 @@ pub enum Target {
 
 impl Target {
     /// All readers.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Obj,
         Self::Ply,
         Self::Stl,
         Self::Off,
+        Self::Quads,
+        Self::Texture,
         Self::Scene,
         Self::Expression,
         Self::Manifest,
@@ -62,6 +68,8 @@ impl Target {
             Self::Ply => "ply",
             Self::Stl => "stl",
             Self::Off => "off",
+            Self::Quads => "quads",
+            Self::Texture => "texture",
             Self::Scene => "scene",
             Self::Expression => "expression",
             Self::Manifest => "manifest",
@@ -82,6 +90,8 @@ impl Target {
             Self::Ply => read_mesh(MeshFormat::Ply, bytes),
             Self::Stl => read_mesh(MeshFormat::Stl, bytes),
             Self::Off => read_mesh(MeshFormat::Off, bytes),
+            Self::Quads => parse_obj_quads(bytes).is_ok(),
+            Self::Texture => parse_png(bytes).is_ok(),
             Self::Scene => read_scene(bytes),
             Self::Expression => read_expression(bytes),
             Self::Manifest => Manifest::decode(Path::new("result"), bytes)
@@ -98,9 +108,10 @@ impl Target {
     /// Words of the format.
     pub fn dictionary(self) -> &'static [&'static str] {
         match self {
-            Self::Obj => &[
-                "v ", "f ", "\\\n", "#", "/", "//", "vn ", "-1", "\r\n", "\n",
+            Self::Obj | Self::Quads => &[
+                "v ", "f ", "vt ", "\\\n", "#", "/", "//", "vn ", "-1", "\r\n", "\n",
             ],
+            Self::Texture => &["IHDR", "IDAT", "IEND", "PLTE", "tRNS", "\u{8}"],
             Self::Ply => PLY_WORDS,
             Self::Stl => &[
                 "solid", "facet", "vertex ", "endfacet", "endloop", "endsolid", "\n",
@@ -175,6 +186,12 @@ const EXPRESSION_WORDS: &[&str] = &[
 
 const SCENE_WORDS: &[&str] = &[
     "[[shell]]\n",
+    "[[double_layer]]\n",
+    "[[heat_source]]\n",
+    "thickness = ",
+    "area_density = ",
+    "burning.",
+    "projection.",
     "[[obstacle]]\n",
     "[[constraint]]\n",
     "[[probe]]\n",

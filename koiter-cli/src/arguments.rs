@@ -17,8 +17,8 @@ pub(crate) use bezier::BezierArguments;
 pub(crate) use modes::ModesArguments;
 pub(crate) use scenes::{ScenesArguments, Variation};
 pub(crate) use studies::{
-    ConvergenceArguments, CreasedVeeArguments, DirectorSource, DiscreteShellsArguments,
-    DiscreteShellsCase, EnergyArguments, RestCurvature, bending_models,
+    BurningArguments, ConvergenceArguments, CreasedVeeArguments, DirectorSource,
+    DiscreteShellsArguments, DiscreteShellsCase, EnergyArguments, RestCurvature, bending_models,
 };
 pub(crate) use validation::ValidateArguments;
 pub(crate) use viewing::ViewArguments;
@@ -322,6 +322,8 @@ pub(crate) enum BenchSubject {
     Models(ModelsArguments),
     /// Bending energies of known shapes under refinement: "Better Bending", Table 4 and Figures 3 to 12
     Convergence(ConvergenceArguments),
+    /// What a step of a burning shell costs, and how its projections converge: "Burning cloth and paper", Tables 1 and 2
+    Burning(BurningArguments),
     /// Bending energies of an unresolved crease: "Better Bending", Table 5, Figures 13 and 14
     CreasedVee(CreasedVeeArguments),
     /// The scenes of "Discrete Shells" and what its integrator conserves, beside an independent program; status 1 if a figure

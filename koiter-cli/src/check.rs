@@ -5,7 +5,9 @@ mod result;
 pub(crate) use result::bodies;
 
 use crate::output::say;
-use koiter::scene::model::{ElementKind, IntegratorKind, Load, Model, Shell, TextEnergy};
+use koiter::scene::model::{
+    DoubleLayerPart, ElementKind, IntegratorKind, Load, Model, Shell, TextEnergy,
+};
 use koiter::scene::{LoadTotal, Scene, readable_bytes};
 use serde::Serialize;
 
@@ -30,6 +32,8 @@ struct Report {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     phases: Vec<PhaseReport>,
     shells: Vec<ShellReport>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    double_layers: Vec<DoubleLayerReport>,
     obstacles: Vec<String>,
     constraints: usize,
     loads: Vec<LoadReport>,
@@ -61,6 +65,32 @@ struct ShellReport {
     shortest_edge: f64,
     min_angle_degrees: f64,
     boundary_loops: Vec<usize>,
+}
+
+#[derive(Serialize)]
+struct DoubleLayerReport {
+    name: String,
+    quads: usize,
+    particles: usize,
+    springs: usize,
+    thickness: f64,
+    mass: f64,
+    held: usize,
+}
+
+impl DoubleLayerReport {
+    fn new(part: &DoubleLayerPart) -> Self {
+        let shell = &part.setup.shell;
+        Self {
+            name: part.name.clone(),
+            quads: shell.mesh.quads().len(),
+            particles: shell.particles.len(),
+            springs: shell.num_springs(),
+            thickness: shell.thickness,
+            mass: shell.masses(part.setup.area_density).iter().sum(),
+            held: part.held.iter().map(|held| held.particles.len()).sum(),
+        }
+    }
 }
 
 /// What changes a rest shape.
@@ -175,13 +205,20 @@ fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(),
         }
     });
     let shells: Vec<ShellReport> = shells.collect();
+    let double_layers = scene.model.double_layers.iter();
+    let double_layers = double_layers.map(DoubleLayerReport::new).collect();
     let obstacles = scene
         .model
         .obstacles
         .iter()
         .map(|obstacle| obstacle.name.clone())
         .collect();
-    let constraints = scene.model.constraints.len();
+    let held = scene
+        .model
+        .double_layers
+        .iter()
+        .map(|layer| layer.held.len());
+    let constraints = scene.model.constraints.len() + held.sum::<usize>();
     let loads = scene.model.loads.iter();
     let loads = loads.map(|load| LoadReport::new(&scene.model, load));
     let loads = loads.collect();
@@ -209,6 +246,7 @@ fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(),
         dt: scene.timeline.dt(1),
         phases,
         shells,
+        double_layers,
         obstacles,
         constraints,
         loads,
@@ -274,6 +312,18 @@ impl Report {
                 shell.boundary_loops
             );
         }
+        for layer in &self.double_layers {
+            say!(
+                "double layer {}: {} quads, {} particles, {} springs, layers {:.2e} m apart, {} kg, {} corners held",
+                layer.name,
+                layer.quads,
+                layer.particles,
+                layer.springs,
+                layer.thickness,
+                decimal(layer.mass),
+                layer.held
+            );
+        }
         if !self.obstacles.is_empty() {
             say!("obstacles: {}", self.obstacles.join(", "));
         }
@@ -302,7 +352,9 @@ impl Report {
                 process.what
             );
         }
-        say!("energies: {}", self.energies.join(", "));
+        if !self.energies.is_empty() {
+            say!("energies: {}", self.energies.join(", "));
+        }
         say!(
             "in all {} vertices, {} triangles, {} degrees of freedom, {} Hessian entries, about {}",
             self.vertices,

@@ -15,7 +15,7 @@ use koiter_render::{
 
 use crate::failure::Failure;
 use crate::output::quoted;
-use frame_view::{FrameView, Topology};
+use frame_view::FrameView;
 use pace::{decimals, pace};
 
 /// Films of a run: small, so that they do not keep the user waiting.
@@ -89,7 +89,7 @@ pub(crate) fn after_run(
     };
     let mut album = Album::open(&reader, look)?;
     let picture = folder.join(PICTURE);
-    album.picture(reader.len().saturating_sub(1), &picture)?;
+    album.picture(album.last(), &picture)?;
     album.look.size = FILM_SIZE;
     let film = album.film_in_any_format(folder, quiet)?;
     Ok(vec![picture, film])
@@ -98,10 +98,11 @@ pub(crate) fn after_run(
 /// A result folder as pictures of one look.
 pub(crate) struct Album<'a> {
     reader: &'a ResultReader,
-    topology: Topology,
     look: Look,
     /// Of all frames [s].
     times: Vec<f64>,
+    /// Frames that show something: all, unless everything burns away.
+    drawn: Vec<usize>,
     bounds: Bounds,
     /// Colours of the field, the same for all frames.
     range: Option<(f64, f64)>,
@@ -110,8 +111,8 @@ pub(crate) struct Album<'a> {
 impl<'a> Album<'a> {
     /// Looks through all frames for the camera and the range of colours.
     pub(crate) fn open(reader: &'a ResultReader, look: Look) -> Result<Self, Failure> {
-        let topology = Topology::new(reader);
         let (mut bounds, mut values, mut times) = (Bounds::EMPTY, Vec::new(), Vec::new());
+        let mut drawn = Vec::new();
         for index in 0..reader.len() {
             let frame = reader.frame(index).map_err(Failure::result)?;
             if index == 0
@@ -121,18 +122,26 @@ impl<'a> Album<'a> {
                 return Err(missing_field(&frame, name));
             }
             times.push(frame.time);
-            let view = FrameView::new(&topology, frame, look.color.as_deref());
+            if !reader.faces_in(&frame).is_empty() {
+                drawn.push(index);
+            }
+            let view = FrameView::new(reader, frame, look.color.as_deref());
             bounds = bounds.join(&view.bounds());
             values.extend(view.values());
         }
         Ok(Self {
             reader,
-            topology,
             look,
             times,
+            drawn,
             bounds,
             range: color_range(values),
         })
+    }
+
+    /// The last frame that shows something.
+    pub(crate) fn last(&self) -> usize {
+        self.drawn.last().copied().unwrap_or(0)
     }
 
     /// Writes a picture of a frame; the camera frames it alone.
@@ -179,7 +188,7 @@ impl<'a> Album<'a> {
     ) -> Result<(), FilmFailure> {
         let (width, height) = self.look.size;
         let mut film = Film::create(path, fps, width, height)?;
-        let frames: Vec<usize> = (0..self.reader.len()).step_by(stride).collect();
+        let frames: Vec<usize> = self.drawn.iter().copied().step_by(stride).collect();
         let bar = if quiet {
             ProgressBar::hidden()
         } else {
@@ -201,7 +210,7 @@ impl<'a> Album<'a> {
     fn draw(&self, index: usize, quality: Quality) -> Result<Image, Failure> {
         let frame = self.reader.frame(index).map_err(Failure::result)?;
         let caption = format!("t = {:.*} s", decimals(&self.times), frame.time);
-        let view = FrameView::new(&self.topology, frame, self.look.color.as_deref());
+        let view = FrameView::new(self.reader, frame, self.look.color.as_deref());
         let (width, height) = self.look.size;
         // A film keeps its camera; a picture is framed for itself.
         let bounds = match quality {
@@ -250,6 +259,8 @@ pub(crate) fn color_map(name: &str) -> (&'static str, ColorMap) {
     match name {
         "bending_energy_density" => ("J/m²", ColorMap::Viridis),
         "mean_curvature" => ("1/m", ColorMap::CoolWarm),
+        "temperature" => ("K", ColorMap::Viridis),
+        "mass_ratio" => ("", ColorMap::Char),
         _ => ("", ColorMap::Viridis),
     }
 }

@@ -40,8 +40,7 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<(), Failure> {
         koiter_render::partial_files(&arguments.output).into(),
     );
     if extension == "png" {
-        let last = reader.len().saturating_sub(1);
-        album.picture(arguments.frame.unwrap_or(last), &arguments.output)?;
+        album.picture(arguments.frame.unwrap_or(album.last()), &arguments.output)?;
     } else if arguments.frame.is_some() {
         return Err(Failure::input(
             "--frame is for pictures; a film has all frames",

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use koiter::io::read::{MeshFormat, RawMesh, ReadError};
-use koiter::io::{MAX_SCENE_BYTES, read_bounded, read_mesh};
+use koiter::burning::{QuadMesh, Texture};
+use koiter::io::read::{MeshFormat, RawMesh, ReadError, parse_obj_quads, parse_png};
+use koiter::io::{MAX_SCENE_BYTES, read_bounded, read_mesh, read_quads, read_texture};
 use koiter::mesh::{MeshError, Surface, SurfaceOptions};
 use koiter::scene::{
     Document, MeshSource, Scene, SceneError, SceneErrorKind, SceneFile, UnreadableMesh, nearest,
@@ -123,6 +124,32 @@ const SHIPPED: &[Shipped] = &[
     Shipped {
         name: "paper-sheet",
         text: include_str!("../../scenes/paper-sheet/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "hot-sphere",
+        text: include_str!("../../scenes/hot-sphere/scene.toml"),
+        meshes: &[(
+            "patches.png",
+            include_bytes!("../../scenes/hot-sphere/patches.png"),
+        )],
+    },
+    Shipped {
+        name: "burning-paper",
+        text: include_str!("../../scenes/burning-paper/scene.toml"),
+        meshes: &[(
+            "patches.png",
+            include_bytes!("../../scenes/burning-paper/patches.png"),
+        )],
+    },
+    Shipped {
+        name: "burning-torus",
+        text: include_str!("../../scenes/burning-torus/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "torus-on-sphere",
+        text: include_str!("../../scenes/torus-on-sphere/scene.toml"),
         meshes: &[],
     },
     Shipped {
@@ -294,18 +321,54 @@ impl MeshSource for Meshes {
         raw.into_surface(options).map_err(unreadable)
     }
 
+    fn read_quads(&self, file: &str) -> Result<QuadMesh, UnreadableMesh> {
+        match self.shipped_bytes(file) {
+            Some(bytes) => parse_obj_quads(bytes).map_err(|error| broken(file, &error)),
+            None => read_quads(&self.path(file)).map_err(unreadable),
+        }
+    }
+
+    fn read_texture(&self, file: &str) -> Result<Texture, UnreadableMesh> {
+        match self.shipped_bytes(file) {
+            Some(bytes) => parse_png(bytes).map_err(|error| broken(file, &error)),
+            None => read_texture(&self.path(file)).map_err(unreadable),
+        }
+    }
+
     fn read_text(&self, file: &str) -> Result<String, UnreadableMesh> {
-        let path = match self {
-            Self::Folder(folder) => folder.join(file),
-            // Relative to where the program is run, as meshes of the user's are.
-            Self::Shipped(_) => PathBuf::from(file),
-        };
+        let path = self.path(file);
         let told = |error: &dyn std::fmt::Display| UnreadableMesh {
             message: format!("cannot read {}: {error}", path.display()),
             help: None,
         };
         let bytes = read_bounded(&path, MAX_SCENE_BYTES).map_err(|error| told(&error))?;
         String::from_utf8(bytes).map_err(|error| told(&error))
+    }
+}
+
+impl Meshes {
+    fn path(&self, file: &str) -> PathBuf {
+        match self {
+            Self::Folder(folder) => folder.join(file),
+            // Relative to where the program is run, as meshes of the user's are.
+            Self::Shipped(_) => PathBuf::from(file),
+        }
+    }
+
+    /// A file that ships with the scene.
+    fn shipped_bytes(&self, file: &str) -> Option<&'static [u8]> {
+        let Self::Shipped(shipped) = self else {
+            return None;
+        };
+        let found = shipped.meshes.iter().find(|(name, _)| *name == file);
+        found.map(|(_, bytes)| *bytes)
+    }
+}
+
+fn broken(file: &str, error: &dyn std::fmt::Display) -> UnreadableMesh {
+    UnreadableMesh {
+        message: format!("{file}: {error}"),
+        help: None,
     }
 }
 

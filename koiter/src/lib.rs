@@ -4,6 +4,7 @@
 pub mod assembly;
 pub mod audit;
 pub mod bezier;
+pub mod burning;
 pub mod contact;
 pub mod energy;
 pub mod geometry;

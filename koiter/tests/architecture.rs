@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-const ORDER: [&str; 15] = [
+const ORDER: [&str; 16] = [
     "mesh",
     "geometry",
     "material",
@@ -15,6 +15,7 @@ const ORDER: [&str; 15] = [
     "integrate",
     "bezier",
     "process",
+    "burning",
     "scene",
     "io",
     "testing",

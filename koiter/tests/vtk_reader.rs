@@ -107,6 +107,7 @@ fn write_result(folder: &Path) {
                 name: "bending_energy_density".to_string(),
                 values: (0..num_faces).map(|f| f as f32 * -1e-6).collect(),
             }],
+            topology: None,
         };
         writer.write_frame(&frame).unwrap();
     }

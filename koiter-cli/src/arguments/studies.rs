@@ -115,6 +115,23 @@ pub(crate) struct ConvergenceArguments {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
+  koiter bench burning
+  koiter bench burning --cells 10,20,40 --iterations 40 --json")]
+pub(crate) struct BurningArguments {
+    /// Cells along a side of the sheet: n of them have 10 n² springs
+    #[arg(long, value_name = "N", value_delimiter = ',', default_value = "10,20,40,50,100", value_parser = clap::value_parser!(u16).range(2..=1000))]
+    pub(crate) cells: Vec<u16>,
+    /// Iterations of conjugate gradients a solve where all are taken
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) iterations: u16,
+    /// Steps of which the fastest counts
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) steps: u16,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
   koiter bench creased-vee
   koiter bench creased-vee --models bac,dcs --plot pictures --json")]
 pub(crate) struct CreasedVeeArguments {

@@ -5,6 +5,7 @@
 mod assembly;
 mod bezier;
 mod bezier_speed;
+mod burning;
 mod contact;
 mod convergence;
 mod creased_vee;
@@ -36,6 +37,7 @@ pub(crate) fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         BenchSubject::Convergence(options) => {
             return convergence::bench(options, arguments.json);
         }
+        BenchSubject::Burning(options) => return burning::bench(options, arguments.json),
         BenchSubject::CreasedVee(options) => {
             return creased_vee::bench(options, arguments.json);
         }

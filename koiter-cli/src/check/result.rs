@@ -92,6 +92,10 @@ impl Report {
         let bar = ProgressBar::new(reader.len() as u64);
         for index in 0..reader.len() {
             let row = match reader.frame(index) {
+                // What burns away has other faces in every frame: each is compared with itself.
+                Ok(frame) if frame.topology.is_some() => {
+                    Row::new(index, &frame, &prepare(reader, None, &frame))
+                }
                 Ok(frame) => {
                     let audit =
                         audit.get_or_insert_with(|| prepare(reader, rest.as_deref(), &frame));
@@ -179,10 +183,10 @@ fn prepare(reader: &ResultReader, rest: Option<&[RestFace]>, first: &Frame) -> A
     let as_it_is = |face: &[u32; 3]| RestFace::from_corners(&corners(face));
     let rest = match rest {
         Some(rest) => rest.to_vec(),
-        None => reader.faces().iter().map(as_it_is).collect(),
+        None => reader.faces_in(first).iter().map(as_it_is).collect(),
     };
-    let bodies = bodies(&reader.manifest().parts);
-    Audit::new(bodies, reader.faces(), &rest, &first.positions)
+    let bodies = bodies(reader.parts_in(first));
+    Audit::new(bodies, reader.faces_in(first), &rest, &first.positions)
 }
 
 /// What an audit knows of the parts of a result.

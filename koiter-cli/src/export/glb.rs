@@ -61,7 +61,7 @@ fn field_colors(
     let field = frame.face_fields.iter().find(|field| field.name == name);
     let field = field.ok_or_else(|| missing_field(frame, name))?;
     let mut sums = vec![(0.0, 0.0); frame.positions.len()];
-    for (face, &value) in reader.faces().iter().zip(&field.values) {
+    for (face, &value) in reader.faces_in(frame).iter().zip(&field.values) {
         if value.is_finite() {
             for &vertex in face {
                 let (sum, count) = &mut sums[vertex as usize];

@@ -3,18 +3,18 @@
 use koiter::io::result::{Frame, Part, PartKind, ResultReader};
 use koiter_render::{Bounds, FieldView, Ground, PartView, Rgb, Scene};
 
-/// What does not change from frame to frame: the parts and their faces, each by its own vertex numbers.
-pub(super) struct Topology {
+/// The parts of a frame and their faces, each by its own vertex numbers.
+struct Topology {
     parts: Vec<Part>,
     faces: Vec<Vec<[u32; 3]>>,
 }
 
 impl Topology {
-    pub(super) fn new(reader: &ResultReader) -> Self {
-        let parts = reader.manifest().parts.clone();
+    fn new(reader: &ResultReader, frame: &Frame) -> Self {
+        let parts = reader.parts_in(frame).to_vec();
         let local = |part: &Part| {
             let offset = part.vertices.start as u32;
-            let faces = &reader.faces()[part.faces.clone()];
+            let faces = &reader.faces_in(frame)[part.faces.clone()];
             faces
                 .iter()
                 .map(|corners| corners.map(|vertex| vertex - offset))
@@ -28,16 +28,17 @@ impl Topology {
 }
 
 /// A frame with its coordinates as arrays.
-pub(super) struct FrameView<'a> {
-    topology: &'a Topology,
+pub(super) struct FrameView {
+    topology: Topology,
     positions: Vec<[f64; 3]>,
     /// Values of the field at the faces of all parts.
     field: Option<Vec<f64>>,
 }
 
-impl<'a> FrameView<'a> {
+impl FrameView {
     /// `field` is left out if the frame does not have it.
-    pub(super) fn new(topology: &'a Topology, frame: Frame, field: Option<&str>) -> Self {
+    pub(super) fn new(reader: &ResultReader, frame: Frame, field: Option<&str>) -> Self {
+        let topology = Topology::new(reader, &frame);
         let values = field.and_then(|name| frame.field(name));
         Self {
             topology,

@@ -42,6 +42,8 @@ pub(super) struct StatsLine<'a> {
     largest_forces: Vec<ForceRecord<'a>>,
     #[serde(serialize_with = "as_map")]
     energies: &'a [(String, f64)],
+    #[serde(serialize_with = "as_map", skip_serializing_if = "<[_]>::is_empty")]
+    measures: &'a [(&'static str, f64)],
     #[serde(serialize_with = "as_map")]
     seconds: &'a [(&'static str, f64)],
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -113,6 +115,7 @@ impl<'a> StatsLine<'a> {
             min_gap: report.min_gap,
             kappa: report.kappa,
             energies: &report.energies,
+            measures: &report.measures,
             seconds: &report.seconds,
             load_factor: report.load_factor,
             stable: report.negative_eigenvalues.map(|count| count == 0),
@@ -147,6 +150,9 @@ pub(super) struct Summary {
     pub(super) dofs: usize,
     pub(super) hessian_nonzeros: usize,
     pub(super) peak_memory_bytes: Option<u64>,
+    /// Figures of double layers after the last step.
+    #[serde(serialize_with = "as_map", skip_serializing_if = "Vec::is_empty")]
+    pub(super) measures: Vec<(&'static str, f64)>,
     pub(super) probes: Value,
     pub(super) converged: bool,
 }
@@ -169,6 +175,7 @@ impl Summary {
             dofs: stats.dofs,
             hessian_nonzeros: stats.hessian_nonzeros,
             peak_memory_bytes: None,
+            measures: Vec::new(),
             probes: Value::Null,
             converged: true,
         }
@@ -185,6 +192,7 @@ impl Summary {
             *count += report.intersections;
         }
         self.converged &= report.converged;
+        self.measures.clone_from(&report.measures);
         for &(part, seconds) in &report.seconds {
             match self
                 .seconds_by_part
@@ -258,6 +266,9 @@ impl Summary {
                 self.faces,
                 readable_bytes(bytes as f64)
             );
+        }
+        for (name, value) in &self.measures {
+            say!("{}: {value:.4}", name.replace('_', " "));
         }
         if let Value::Object(probes) = &self.probes {
             for (name, value) in probes {

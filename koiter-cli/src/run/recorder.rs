@@ -187,6 +187,7 @@ impl<'a> Recorder<'a> {
                     values,
                 })
                 .collect(),
+            topology: start::present_parts(simulation),
         };
         self.writer.write_frame(&frame).map_err(writing)
     }

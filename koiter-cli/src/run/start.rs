@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use koiter::io::result::{Manifest, Part, PartKind};
+use koiter::io::result::{FrameTopology, Manifest, Part, PartKind};
 use koiter::scene::model::{Model, Obstacle};
-use koiter::scene::{BuildError, Simulation};
+use koiter::scene::{BuildError, PartTopology, Simulation};
 
 use crate::debug_mesh;
 use crate::failure::Failure;
@@ -29,12 +29,23 @@ pub(crate) fn start(model: &Model, debug_mesh: Option<&Path>) -> Result<Simulati
 
 /// Parts and faces of everything that is shown.
 pub(crate) fn parts(simulation: &Simulation) -> (Vec<Part>, Vec<[u32; 3]>) {
+    number(simulation.model(), simulation.parts())
+}
+
+/// Parts and faces as they are now, where faces burn away; `None`: [`parts`] are right throughout.
+pub(super) fn present_parts(simulation: &Simulation) -> Option<FrameTopology> {
+    let (parts, faces) = number(simulation.model(), &simulation.present_parts()?);
+    Some(FrameTopology { parts, faces })
+}
+
+/// Numbers the vertices and faces of all parts through.
+fn number(model: &Model, shown: &[PartTopology]) -> (Vec<Part>, Vec<[u32; 3]>) {
     let (mut parts, mut faces) = (Vec::new(), Vec::new());
-    let model = simulation.model();
-    let solids = model.shells.iter().map(|_| None);
+    let simulated = model.shells.len() + model.double_layers.len();
+    let solids = (0..simulated).map(|_| None);
     let solids = solids.chain(model.obstacles.iter().map(Obstacle::solid));
     let mut first_vertex = 0;
-    for (part, solid) in simulation.parts().iter().zip(solids) {
+    for (part, solid) in shown.iter().zip(solids) {
         let first_face = faces.len();
         let offset = first_vertex as u32;
         faces.extend(

@@ -74,6 +74,7 @@ impl Shown {
             Content::Mesh(Box::new(Mesh::read(path)?))
         } else {
             let reader = ResultReader::open_with_gaps(path).map_err(Failure::result)?;
+            refuse_changing_faces(&reader)?;
             let known = Known {
                 written: written(path),
                 ..Known::default()
@@ -380,4 +381,17 @@ fn written(folder: &Path) -> Option<SystemTime> {
         .ok()?
         .modified()
         .ok()
+}
+
+/// The page moves the vertices of one topology.
+fn refuse_changing_faces(reader: &ResultReader) -> Result<(), Failure> {
+    match reader.frame(0) {
+        Ok(frame) if frame.topology.is_some() => {
+            let message = "faces burn away from frame to frame, which the viewer cannot show";
+            Err(Failure::input(message).with_help(
+                "koiter render makes pictures and films of it, koiter export --to vtu a series for ParaView",
+            ))
+        }
+        _ => Ok(()),
+    }
 }

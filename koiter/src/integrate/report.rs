@@ -24,6 +24,8 @@ pub struct StepReport {
     pub energies: Vec<(String, f64)>,
     /// Names of those energies that a step takes away beside friction: they add up over its parts.
     pub taken: Vec<String>,
+    /// Other figures by name, of what has no energies.
+    pub measures: Vec<(&'static str, f64)>,
     /// Seconds spent, by part; the names are snake_case, like all keys of results.
     pub seconds: Vec<(&'static str, f64)>,
     /// Active contact pairs.

@@ -30,7 +30,7 @@ mod writer;
 pub use checkpoint::{Checkpoint, CheckpointError, Totals};
 pub use error::ResultError;
 pub use folder_lock::FolderLock;
-pub use frame::{Field, Frame, FrameInfo};
+pub use frame::{Field, Frame, FrameInfo, FrameTopology};
 pub use frame_probe::{Element, FrameProbe};
 pub use manifest::{Manifest, Part, PartKind, UpAxis};
 pub use reader::{ResultReader, decode_stats};

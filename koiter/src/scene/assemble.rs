@@ -11,6 +11,7 @@ use super::processes::ProcessError;
 use super::symmetry::symmetry_edges;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout};
+use crate::burning::BurningError;
 use crate::contact::{
     CollisionBody, CollisionMesh, CollisionPlane, Contact, StartError, UnknownBody,
 };
@@ -39,6 +40,14 @@ pub enum BuildError {
         shell: String,
         /// What is wrong.
         error: CompositionError,
+    },
+    /// A double layer that cannot be set up.
+    #[error("double layer '{double_layer}': {error}")]
+    DoubleLayer {
+        /// Name of the double layer.
+        double_layer: String,
+        /// What is wrong.
+        error: BurningError,
     },
     /// A face that is stretched to its limit at the start.
     #[error(

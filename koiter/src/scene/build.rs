@@ -1,6 +1,7 @@
 //! From what was typed to a model that can be simulated: meshes read, selections resolved, plausibility checked.
 
 mod arc_length;
+mod burning;
 mod composition;
 mod energies;
 mod loads;
@@ -115,6 +116,8 @@ impl Builder<'_> {
             .iter()
             .map(|o| self.obstacle(o))
             .collect::<Result<_, _>>()?;
+        let double_layers = self.double_layers()?;
+        let heat_sources = self.heat_sources(&double_layers)?;
         let constraints = self.constraints(&shells)?;
         let loads = self.loads(&shells)?;
         let energies = self.energies(&shells)?;
@@ -123,6 +126,8 @@ impl Builder<'_> {
         let (contact, solver) = (&spec.contact, SolverOptions::default());
         Ok(Model {
             shells,
+            double_layers,
+            heat_sources,
             obstacles,
             constraints,
             symmetry_planes,
@@ -291,6 +296,10 @@ impl Builder<'_> {
 
     fn constraints(&self, shells: &[Shell]) -> Result<Vec<Constraint>, SceneError> {
         let mut constraints = Vec::new();
+        if shells.is_empty() {
+            // They hold double layers, and are with them.
+            return Ok(constraints);
+        }
         for (index, constraint) in self.spec.constraint.iter().enumerate() {
             let path = constraint.path(index);
             let shell = self.shell_index(&format!("{path}.shell"), &constraint.shell)?;

@@ -4,6 +4,7 @@ use super::model::{Model, Obstacle, ObstacleShape};
 use super::simulation::Simulation;
 use crate::Vec3;
 use crate::audit::{RestFace, Solid};
+use crate::burning::{DoubleLayer, RenderSurface};
 use crate::mesh::generate;
 
 /// A surface to show.
@@ -35,15 +36,25 @@ pub(super) fn tessellate(model: &Model) -> Vec<PartTopology> {
         thickness: shell.thickness,
         start_positions: shell.surface.positions.clone(),
     });
-    let extent = model
-        .shells
-        .iter()
-        .map(|s| {
-            let (low, high) = s.surface.bounding_box();
-            (high - low).norm()
-        })
+    let extents = model.shells.iter().map(|s| {
+        let (low, high) = s.surface.bounding_box();
+        (high - low).norm()
+    });
+    let layers = model.double_layers.iter();
+    let extent = extents
+        .chain(
+            layers
+                .clone()
+                .map(|layer| diagonal(&layer.setup.shell.particles)),
+        )
         .fold(1e-3, f64::max);
+    let layers = layers.map(|layer| {
+        let shell = &layer.setup.shell;
+        let whole = RenderSurface::new(&shell.mesh);
+        layer_part(&layer.name, shell, &whole, &shell.particles)
+    });
     shells
+        .chain(layers)
         .chain(
             model
                 .obstacles
@@ -51,6 +62,34 @@ pub(super) fn tessellate(model: &Model) -> Vec<PartTopology> {
                 .map(|obstacle| obstacle_part(obstacle, extent)),
         )
         .collect()
+}
+
+/// Diagonal of the box around points [m].
+fn diagonal(points: &[Vec3]) -> f64 {
+    let low = points
+        .iter()
+        .fold(Vec3::repeat(f64::MAX), |low, x| low.inf(x));
+    let high = points
+        .iter()
+        .fold(Vec3::repeat(f64::MIN), |high, x| high.sup(x));
+    (high - low).norm()
+}
+
+/// What a surface shows of a double layer with particles at `positions` [m].
+fn layer_part(
+    name: &str,
+    shell: &DoubleLayer,
+    surface: &RenderSurface,
+    positions: &[Vec3],
+) -> PartTopology {
+    PartTopology {
+        name: name.to_owned(),
+        is_obstacle: false,
+        faces: surface.faces.clone(),
+        num_vertices: surface.vertices.len(),
+        thickness: shell.thickness,
+        start_positions: surface.positions(shell, positions),
+    }
 }
 
 fn obstacle_part(obstacle: &Obstacle, extent: f64) -> PartTopology {
@@ -111,6 +150,38 @@ impl Obstacle {
 }
 
 impl Simulation {
+    /// Positions of the vertices of all parts [m].
+    pub fn display_positions(&self) -> Vec<Vec3> {
+        let mut positions: Vec<Vec3> = (0..self.model.shells.len())
+            .flat_map(|shell| self.shell_positions(shell))
+            .collect();
+        for (part, layer) in self.model.double_layers.iter().zip(self.double_layers()) {
+            let particles = &layer.state().positions;
+            positions.extend(layer.surface().positions(&part.setup.shell, particles));
+        }
+        let shown = self.parts().iter().filter(|part| part.is_obstacle);
+        let obstacles = self.model.obstacles.iter().zip(shown);
+        for (obstacle, part) in obstacles {
+            positions.extend(obstacle.points_at(&part.start_positions, self.time()));
+        }
+        positions
+    }
+
+    /// The surfaces to show as they are now, where their faces change from step to step: those of double layers have
+    /// their present positions for a start. `None`: [`Self::parts`] are right throughout.
+    pub fn present_parts(&self) -> Option<Vec<PartTopology>> {
+        if self.burning.is_empty() {
+            return None;
+        }
+        let layers = self.model.double_layers.iter().zip(&self.burning.shells);
+        let layers = layers.map(|(part, layer)| {
+            let (shell, positions) = (&part.setup.shell, &layer.state().positions);
+            layer_part(&part.name, shell, layer.surface(), positions)
+        });
+        let obstacles = self.parts().iter().filter(|part| part.is_obstacle);
+        Some(layers.chain(obstacles.cloned()).collect())
+    }
+
     /// What the faces of all parts are at rest: those of shells in their rest metric, those of obstacles at the start.
     pub fn rest_faces(&self) -> Vec<RestFace> {
         let frames = self
@@ -123,12 +194,13 @@ impl Simulation {
             area: frame.area,
             edges: frame.edge_lengths(),
         });
-        let obstacles = self.parts().iter().filter(|part| part.is_obstacle);
-        let of_obstacles = obstacles.flat_map(|part| {
+        // Double layers and obstacles: what they are at the start.
+        let others = self.parts().iter().skip(self.model().shells.len());
+        let of_others = others.flat_map(|part| {
             let corners = |face: &[u32; 3]| face.map(|v| part.start_positions[v as usize]);
             (part.faces.iter()).map(move |face| RestFace::from_corners(&corners(face)))
         });
-        of_shells.chain(of_obstacles).collect()
+        of_shells.chain(of_others).collect()
     }
 }
 

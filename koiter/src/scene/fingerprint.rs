@@ -44,7 +44,7 @@ impl Fnv {
 }
 
 impl Model {
-    /// Name of each shell, then of each obstacle, with a number that changes with any vertex or face of its mesh.
+    /// Name of each shell, double layer, then obstacle, with a number that changes with any vertex or face of its mesh.
     pub fn fingerprints(&self) -> Vec<(String, u64)> {
         let shells = self.shells.iter().map(|shell| {
             let mut hash = Fnv::new();
@@ -52,6 +52,22 @@ impl Model {
             hash.add_points(&shell.rest_positions);
             hash.add_composition(&shell.composition);
             (shell.name.clone(), hash.0)
+        });
+        let layers = self.double_layers.iter().map(|layer| {
+            let (mut hash, setup) = (Fnv::new(), &layer.setup);
+            for vertex in setup.shell.mesh.quads().iter().flatten() {
+                hash.add(&vertex.to_le_bytes());
+            }
+            hash.add_points(&setup.shell.particles);
+            let sources = self
+                .heat_sources
+                .iter()
+                .flat_map(|source| &source.intensity);
+            let textures = sources.chain([&setup.loss_factors, &setup.diffusivity_factors]);
+            for value in textures.flatten() {
+                hash.add(&value.to_le_bytes());
+            }
+            (layer.name.clone(), hash.0)
         });
         let obstacles = self.obstacles.iter().map(|obstacle| {
             let mut hash = Fnv::new();
@@ -63,7 +79,7 @@ impl Model {
             }
             (obstacle.name.clone(), hash.0)
         });
-        shells.chain(obstacles).collect()
+        shells.chain(layers).chain(obstacles).collect()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::error::{SceneError, SceneErrorKind};
 use super::model::{BendingModel, Model, ObstacleShape};
-use super::simulation::{BYTES_A_DOF, PROGRAM_BYTES};
+use super::simulation::{BYTES_A_DOF, BYTES_A_QUAD, PROGRAM_BYTES};
 use super::spec::{MeshSpec, ObstacleSpec, SceneSpec, ShellSpec};
 use crate::energy::bending::ExtraUnknowns;
 use crate::mesh::generate::face_count;
@@ -33,7 +33,15 @@ pub(super) fn check_spec(spec: &SceneSpec, available: u64) -> Result<(), SceneEr
         let mesh = mesh.as_ref().map_or(0.0, generated_faces);
         obstacle_share(name, mesh + 4.0 * sides as f64)
     });
-    check(shells.chain(obstacles).collect(), available)
+    let layers = spec.double_layer.iter().map(|layer| {
+        let quads = match (&layer.mesh.grid, &layer.mesh.torus) {
+            (Some(grid), _) => grid.cells[0] as f64 * grid.cells[1] as f64,
+            (_, Some(torus)) => torus.around as f64 * torus.tube as f64,
+            _ => 0.0,
+        };
+        layer_share(&layer.name, quads)
+    });
+    check(shells.chain(layers).chain(obstacles).collect(), available)
 }
 
 /// Refuses a model that will not fit, files included, before it is assembled.
@@ -49,7 +57,19 @@ pub(super) fn check_model(model: &Model, available: u64) -> Result<(), SceneErro
         };
         obstacle_share(&obstacle.name, faces as f64)
     });
-    check(shells.chain(obstacles).collect(), available)
+    let layers = model
+        .double_layers
+        .iter()
+        .map(|layer| layer_share(&layer.name, layer.setup.shell.mesh.quads().len() as f64));
+    check(shells.chain(layers).chain(obstacles).collect(), available)
+}
+
+fn layer_share(name: &str, quads: f64) -> Share {
+    Share {
+        path: format!("double_layer.{name}.mesh"),
+        faces: 4.0 * quads,
+        bytes: quads * BYTES_A_QUAD as f64,
+    }
 }
 
 fn shell_share(name: &str, bending: BendingModel, faces: f64) -> Share {

@@ -7,6 +7,7 @@
 mod arc_length;
 mod assemble;
 mod bending_models;
+mod burning;
 mod clamps;
 mod composition;
 mod composition_error;

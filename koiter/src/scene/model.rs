@@ -1,5 +1,6 @@
 //! A checked scene, ready to be simulated: shells, obstacles, constraints, loads.
 
+pub use super::burning::{DoubleLayerPart, HeatSourcePart, Held};
 use crate::Vec3;
 use crate::mesh::{EdgeId, FaceId, VertexId};
 
@@ -437,6 +438,10 @@ pub struct Phase {
 pub struct Model {
     /// Shells.
     pub shells: Vec<Shell>,
+    /// Double layers that burn; a model has either these or shells.
+    pub double_layers: Vec<DoubleLayerPart>,
+    /// Sources of heat, which act on double layers.
+    pub heat_sources: Vec<HeatSourcePart>,
     /// Obstacles.
     pub obstacles: Vec<Obstacle>,
     /// Prescribed vertices.

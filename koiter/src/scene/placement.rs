@@ -4,6 +4,7 @@ use nalgebra::{Rotation3, Unit};
 
 use super::spec::{CylinderSpec, Diagonals, MeshSpec, RotationSpec, UpAxis};
 use crate::Vec3;
+use crate::burning::{QuadMesh, Texture};
 use crate::mesh::generate::{self, Corrugation, GeneratorError, GridDiagonals, HatSize};
 use crate::mesh::{MeshError, OrientationPolicy, Surface, SurfaceOptions, UnreferencedPolicy};
 
@@ -20,11 +21,30 @@ pub trait MeshSource {
     /// # Errors
     /// Whatever the reader says.
     fn read_text(&self, _file: &str) -> Result<String, UnreadableMesh> {
-        let message = "this scene may not read files".to_owned();
-        Err(UnreadableMesh {
-            message,
-            help: None,
-        })
+        Err(no_files())
+    }
+
+    /// The mesh of quads of the file named in a scene; refused unless the source has such files.
+    ///
+    /// # Errors
+    /// Whatever the reader says.
+    fn read_quads(&self, _file: &str) -> Result<QuadMesh, UnreadableMesh> {
+        Err(no_files())
+    }
+
+    /// The image of the file named in a scene; refused unless the source has such files.
+    ///
+    /// # Errors
+    /// Whatever the reader says.
+    fn read_texture(&self, _file: &str) -> Result<Texture, UnreadableMesh> {
+        Err(no_files())
+    }
+}
+
+fn no_files() -> UnreadableMesh {
+    UnreadableMesh {
+        message: "this scene may not read files".to_owned(),
+        help: None,
     }
 }
 
@@ -44,11 +64,7 @@ pub struct NoFiles;
 
 impl MeshSource for NoFiles {
     fn read(&self, _: &str, _: SurfaceOptions) -> Result<Surface, UnreadableMesh> {
-        let message = "this scene may not read files".to_owned();
-        Err(UnreadableMesh {
-            message,
-            help: None,
-        })
+        Err(no_files())
     }
 }
 

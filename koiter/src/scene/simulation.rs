@@ -2,6 +2,7 @@
 
 use super::arc_length;
 use super::assemble::{Assembly, BuildError, assemble, write_points};
+use super::burning::Burning;
 use super::display::{PartTopology, tessellate};
 use super::holds::Holds;
 use super::loads::set_factors;
@@ -36,6 +37,7 @@ pub struct Simulation {
     pub(super) share: f64,
     /// What the load factor of arc length multiplies.
     pub(super) load_pattern: Option<LoadPattern>,
+    pub(super) burning: Burning,
 }
 
 /// Sizes of a simulation.
@@ -57,6 +59,8 @@ pub struct SystemStats {
 
 /// Peaks of runs with BAC: 38 MB at 2.6k unknowns, 187 MB at 14k, 234 MB at 30k, 2.9 GB at 483k. Most is the factor.
 pub(super) const BYTES_A_DOF: usize = 6_000;
+/// Ten springs with their rows of a matrix, two particles, four triangles.
+pub(super) const BYTES_A_QUAD: usize = 4_000;
 /// The program itself, with its scene and pictures.
 pub(super) const PROGRAM_BYTES: usize = 40_000_000;
 
@@ -101,6 +105,11 @@ impl Simulation {
             true => Some(arc_length::load_pattern(&model)?),
             false => None,
         };
+        let burning =
+            Burning::new(&model).map_err(|(double_layer, error)| BuildError::DoubleLayer {
+                double_layer,
+                error,
+            })?;
         let parts = tessellate(&model);
         let holds = Holds::new(&model, clamps);
         let state = State {
@@ -120,6 +129,7 @@ impl Simulation {
             parts,
             share: 1.0,
             load_pattern,
+            burning,
         })
     }
 
@@ -136,6 +146,9 @@ impl Simulation {
     }
 
     fn step_in_pool(&mut self, dt: f64) -> Result<StepReport, StepError> {
+        if !self.burning.is_empty() {
+            return self.step_double_layers(dt);
+        }
         self.enter_phase(self.state.step + 1);
         match self.phase().integrator {
             IntegratorKind::LinearStatic | IntegratorKind::ArcLength => {
@@ -372,30 +385,20 @@ impl Simulation {
         &self.parts
     }
 
-    /// Positions of the vertices of all parts [m].
-    pub fn display_positions(&self) -> Vec<Vec3> {
-        let mut positions: Vec<Vec3> = (0..self.model.shells.len())
-            .flat_map(|shell| self.shell_positions(shell))
-            .collect();
-        let obstacles = self
-            .model
-            .obstacles
-            .iter()
-            .zip(&self.parts[self.model.shells.len()..]);
-        for (obstacle, part) in obstacles {
-            positions.extend(obstacle.points_at(&part.start_positions, self.state.time));
-        }
-        positions
-    }
-
     /// Values on the faces of all parts; zero on obstacles: largest principal Green strain, bending energy density
-    /// [J/m²], mean curvature [1/m], mean curvature at rest [1/m].
+    /// [J/m²], mean curvature [1/m], mean curvature at rest [1/m]; of double layers temperature [K] and mass ratio.
     pub fn face_fields(&self) -> Vec<(&'static str, Vec<f32>)> {
         let shells = &self.system.space.shells;
-        let on_obstacles: usize = self.parts[shells.len()..]
-            .iter()
-            .map(|p| p.faces.len())
-            .sum();
+        let obstacles = self.parts.iter().filter(|part| part.is_obstacle);
+        let on_obstacles: usize = obstacles.map(|part| part.faces.len()).sum();
+        if !self.burning.is_empty() {
+            return (self.burning_fields().into_iter())
+                .map(|(name, mut values)| {
+                    values.extend(std::iter::repeat_n(0.0, on_obstacles));
+                    (name, values)
+                })
+                .collect();
+        }
         let q = &self.state.q;
         let gather = |value: &dyn Fn(usize, usize) -> f64| -> Vec<f32> {
             let on_shells = shells
@@ -441,12 +444,20 @@ impl Simulation {
         let hessian_nonzeros = self.model.shells.iter().map(nonzeros).sum();
         let mut energies: Vec<String> = self.energies().into_iter().map(|(name, _)| name).collect();
         energies.dedup();
+        if !self.burning.is_empty() {
+            // Springs that are projected have none.
+            energies.clear();
+        }
+        let layers = self.burning.shells.iter().map(|shell| &shell.setup().shell);
+        let quads: usize = layers.clone().map(|layer| layer.mesh.quads().len()).sum();
+        let particles: usize = layers.clone().map(|layer| layer.particles.len()).sum();
         SystemStats {
-            vertices: sum(&|m| m.num_vertices()),
-            faces: sum(&|m| m.num_faces()),
-            dofs,
+            // A double layer shows its corners and the centres of its quads, as many as it has particles.
+            vertices: sum(&|m| m.num_vertices()) + particles,
+            faces: sum(&|m| m.num_faces()) + 4 * quads,
+            dofs: dofs + 3 * particles,
             hessian_nonzeros,
-            estimated_memory_bytes: PROGRAM_BYTES + dofs * BYTES_A_DOF,
+            estimated_memory_bytes: PROGRAM_BYTES + dofs * BYTES_A_DOF + quads * BYTES_A_QUAD,
             energies,
         }
     }

@@ -3,6 +3,7 @@
 use super::holds::Anchor;
 use super::simulation::Simulation;
 use crate::assembly::Energy;
+use crate::burning::BurningState;
 use crate::integrate::{Memory, PathPoint, State};
 use crate::process::RestState;
 use crate::solve::{LinearWorkspace, WorkspaceHistory};
@@ -25,6 +26,8 @@ pub struct Snapshot {
     pub rests: Vec<RestState>,
     /// Angles of hinges [rad], which may lie beyond half a turn: of each bending energy and each damper that follows them.
     pub angles: Vec<Vec<f64>>,
+    /// The double layers.
+    pub double_layers: Vec<BurningState>,
     /// What the linear solver keeps between steps.
     pub solver: WorkspaceHistory,
 }
@@ -48,6 +51,7 @@ impl Simulation {
             anchors: self.holds.anchors().to_vec(),
             rests: self.processes.rests(),
             angles: self.system.branches(&self.state.q),
+            double_layers: self.burning.states(),
             solver: self.system.workspace.history(),
         }
     }
@@ -59,6 +63,7 @@ impl Simulation {
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), RestoreError> {
         let refuse = |reason| RestoreError { reason };
         self.check(snapshot).map_err(refuse)?;
+        (self.burning.restore(&snapshot.double_layers)).map_err(refuse)?;
         self.system.workspace =
             LinearWorkspace::with_history(&snapshot.solver, &self.system.layout).map_err(refuse)?;
         self.state = snapshot.state.clone();

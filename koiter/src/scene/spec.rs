@@ -23,6 +23,7 @@ mod constraint;
 mod contact;
 mod damping;
 mod discrete_shells;
+mod double_layer;
 mod energy;
 mod load;
 mod material;
@@ -39,6 +40,9 @@ pub use constraint::{BoundsSpec, ConstraintSpec, SelectSpec};
 pub use contact::{ContactSpec, PairSpec};
 pub use damping::DampingSpec;
 pub use discrete_shells::DiscreteShellsSpec;
+pub use double_layer::{
+    BurningSpec, DoubleLayerSpec, HeatSourceSpec, ProjectionSpec, QuadGridSpec, QuadMeshSpec,
+};
 pub use energy::{EnergySpec, ParameterSpec};
 pub use load::{EdgeChoice, LoadSpec};
 pub use material::{LayerSpec, MaterialSpec};
@@ -96,6 +100,12 @@ pub struct SceneSpec {
     /// Shells.
     #[serde(default)]
     pub shell: Vec<ShellSpec>,
+    /// Shells that burn: two layers of springs; in place of elastic shells.
+    #[serde(default)]
+    pub double_layer: Vec<DoubleLayerSpec>,
+    /// What heats double layers.
+    #[serde(default)]
+    pub heat_source: Vec<HeatSourceSpec>,
     /// Obstacles.
     #[serde(default)]
     pub obstacle: Vec<ObstacleSpec>,
@@ -366,10 +376,12 @@ pub const ENERGY_NAMES: [&str; 8] = [
 ];
 
 /// Names of the face fields a run can write.
-pub const FIELD_NAMES: [&str; 4] = [
+pub const FIELD_NAMES: [&str; 6] = [
     "strain",
     "bending_energy_density",
     "mean_curvature",
+    "temperature",
+    "mass_ratio",
     "rest_curvature",
 ];
 

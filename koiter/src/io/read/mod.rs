@@ -1,4 +1,4 @@
-//! Mesh files in: OBJ, PLY, STL, OFF.
+//! Mesh files in: OBJ, PLY, STL, OFF; quads from OBJ; textures from PNG.
 //!
 //! Only positions and faces are read; polygons become fans of triangles about their first corner, which is right for
 //! convex polygons. Lengths are taken as metres and axes as they are.
@@ -7,18 +7,23 @@ mod error;
 mod obj;
 mod off;
 mod ply;
+mod png;
+mod quads;
 mod stl;
 mod text;
 
+pub use self::png::parse_png;
 pub use error::{Location, ParseError, ReadError};
 pub use obj::parse_obj;
 pub use off::parse_off;
 pub use ply::parse_ply;
+pub use quads::parse_obj_quads;
 pub use stl::parse_stl;
 
 use std::path::{Path, PathBuf};
 
 use crate::Vec3;
+use crate::burning::{QuadMesh, Texture};
 use crate::io::{MAX_DATA_BYTES, read_bounded};
 use crate::mesh::{Surface, SurfaceOptions};
 
@@ -122,6 +127,37 @@ pub fn read_mesh(path: &Path) -> Result<RawMesh, ReadError> {
     Ok(RawMesh {
         path: in_file(),
         ..mesh
+    })
+}
+
+/// Reads a mesh of quads; see [`parse_obj_quads`].
+///
+/// # Errors
+/// Not a regular file, a refusal of the system, a fault in the file.
+pub fn read_quads(path: &Path) -> Result<QuadMesh, ReadError> {
+    read_parsed(path, parse_obj_quads)
+}
+
+/// Reads a texture; see [`parse_png`].
+///
+/// # Errors
+/// Not a regular file, a refusal of the system, a fault in the file.
+pub fn read_texture(path: &Path) -> Result<Texture, ReadError> {
+    read_parsed(path, parse_png)
+}
+
+fn read_parsed<T>(
+    path: &Path,
+    parse: impl Fn(&[u8]) -> Result<T, ParseError>,
+) -> Result<T, ReadError> {
+    let in_file = || path.to_path_buf();
+    let bytes = read_bounded(path, MAX_DATA_BYTES).map_err(|source| ReadError::Io {
+        path: in_file(),
+        source,
+    })?;
+    parse(&bytes).map_err(|source| ReadError::Parse {
+        path: in_file(),
+        source,
     })
 }
 

@@ -58,7 +58,11 @@ pub fn parse_obj(bytes: &[u8]) -> Result<RawMesh, ParseError> {
 }
 
 /// A zero-based index from `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-fn parse_corner(word: &str, num_vertices: usize, line: usize) -> Result<u32, ParseError> {
+pub(super) fn parse_corner(
+    word: &str,
+    num_vertices: usize,
+    line: usize,
+) -> Result<u32, ParseError> {
     let fault = |problem: String| ParseError::at_line(line, problem);
     let index = word.split('/').next().unwrap_or_default();
     let index: i64 = index.parse().map_err(|_| {
@@ -84,7 +88,7 @@ fn parse_corner(word: &str, num_vertices: usize, line: usize) -> Result<u32, Par
 }
 
 /// Lines without comments, joined where they end in a backslash; with the number of their first line.
-fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
+pub(super) fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut lines = text.lines().enumerate();
     std::iter::from_fn(move || {
         let (index, line) = lines.next()?;

@@ -13,6 +13,7 @@
 //! list of anchors: list of u64 constraints, f64 time, list of f64: q when they began
 //! list of rest states: list of f64 rest curvatures, list of f64 flows
 //! list of lists of f64: angles of hinges
+//! list of double layers: lists of f64: positions, velocities, temperatures, mass ratios
 //! list of u32 × 2: couplings by contacts  list of u32: elimination order  u64 factor entries when it was made
 //! u64 × 4 Newton iterations, steps not converged, steps in parts, intersections  f64 × 2 smallest gap, seconds
 //! list of parts of the run: text name, f64 seconds  list of f64: last values of the probes
@@ -26,6 +27,8 @@ use std::path::Path;
 use super::CHECKPOINT;
 use super::error::{ResultError, read_if_there};
 use super::topology_file::checked_body;
+use crate::Vec3;
+use crate::burning::BurningState;
 use crate::integrate::{Memory, PathPoint, State};
 use crate::io::bytes::{ByteReader, Endian};
 use crate::io::checksum::crc32;
@@ -34,7 +37,7 @@ use crate::scene::{Anchor, Snapshot};
 use crate::solve::WorkspaceHistory;
 
 const MAGIC: &[u8; 8] = b"KOITERCP";
-const FORMAT: u32 = 6;
+const FORMAT: u32 = 7;
 
 /// All that is needed to go on with a run to the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -163,6 +166,12 @@ impl Checkpoint {
             out.numbers(&rest.flow);
         });
         out.list(&snapshot.angles, |out, angles| out.numbers(angles));
+        out.list(&snapshot.double_layers, |out, layer| {
+            out.vectors(&layer.positions);
+            out.vectors(&layer.velocities);
+            out.numbers(&layer.temperatures);
+            out.numbers(&layer.mass_ratios);
+        });
         let WorkspaceHistory {
             changing_pairs,
             node_order,
@@ -218,6 +227,10 @@ impl Bytes {
 
     fn numbers(&mut self, values: &[f64]) {
         self.list(values, |out, value| out.f64(*value));
+    }
+
+    fn vectors(&mut self, values: &[Vec3]) {
+        self.list(values, |out, value| value.iter().for_each(|x| out.f64(*x)));
     }
 
     fn memory(&mut self, memory: &Memory) {
@@ -279,6 +292,14 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
         })
     })?;
     let angles = list(reader, 8, numbers)?;
+    let double_layers = list(reader, 32, |reader| {
+        Some(BurningState {
+            positions: vectors(reader)?,
+            velocities: vectors(reader)?,
+            temperatures: numbers(reader)?,
+            mass_ratios: numbers(reader)?,
+        })
+    })?;
     let solver = WorkspaceHistory {
         changing_pairs: list(reader, 8, |reader| Some([reader.u32()?, reader.u32()?]))?,
         node_order: list(reader, 4, ByteReader::u32)?,
@@ -302,6 +323,7 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
         anchors,
         rests,
         angles,
+        double_layers,
         solver,
     };
     Some(Checkpoint {
@@ -333,6 +355,12 @@ fn list<'a, T>(
 
 fn numbers(reader: &mut ByteReader) -> Option<Vec<f64>> {
     list(reader, 8, ByteReader::f64)
+}
+
+fn vectors(reader: &mut ByteReader) -> Option<Vec<Vec3>> {
+    list(reader, 24, |reader| {
+        Some(Vec3::new(reader.f64()?, reader.f64()?, reader.f64()?))
+    })
 }
 
 fn memory(reader: &mut ByteReader) -> Option<Memory> {

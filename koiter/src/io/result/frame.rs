@@ -1,20 +1,24 @@
 //! One frame: `frames/00000.bin`.
 //!
 //! ```text
-//! "KOITERFR"  u32 version
+//! "KOITERFR"  u32 version: 1, or 2 where the frame has faces of its own
 //! u64 step  f64 time  u64 vertices  u64 faces  u32 vertex fields  u32 face fields
 //! f64 × 3 a vertex
 //! each field, of vertices first:  u32 length of name  name (UTF-8)  f32 a vertex or face
+//! version 2 only: u32 parts  u64 vertices, u64 faces a part  u32 × 3 a face
 //! u32 CRC-32
 //! ```
 
+use super::manifest::check_parts;
 use super::topology_file::checked_body;
+use super::{Part, PartKind};
 use crate::Vec3;
 use crate::io::bytes::{ByteReader, Endian};
 use crate::io::checksum::crc32;
 
 const MAGIC: &[u8; 8] = b"KOITERFR";
 const VERSION: u32 = 1;
+const VERSION_WITH_FACES: u32 = 2;
 /// Bytes of the header, from the magic to the numbers of fields.
 pub(super) const HEADER_LENGTH: usize = 8 + 4 + 8 + 8 + 8 + 8 + 4 + 4;
 
@@ -31,6 +35,23 @@ pub struct Frame {
     pub vertex_fields: Vec<Field>,
     /// Values at faces.
     pub face_fields: Vec<Field>,
+    /// Parts and faces of this frame, where they are not those of the result: something burnt away.
+    pub topology: Option<FrameTopology>,
+}
+
+/// Parts and faces of one frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrameTopology {
+    /// The parts of the result, each with the vertices and faces that it has in this frame.
+    pub parts: Vec<Part>,
+    /// The faces of all parts, by the vertex numbers of the whole.
+    pub faces: Vec<[u32; 3]>,
+}
+
+impl FrameTopology {
+    fn num_vertices(&self) -> usize {
+        self.parts.last().map_or(0, |part| part.vertices.end)
+    }
 }
 
 /// A named value at every vertex or face of all parts, in single precision: for looking at, not for restarting.
@@ -76,6 +97,13 @@ impl Frame {
     /// # Errors
     /// What is wrong, as the end of a sentence that begins with the file's name.
     pub fn check(&self, num_vertices: usize, num_faces: usize) -> Result<(), String> {
+        let (num_vertices, num_faces) = match &self.topology {
+            None => (num_vertices, num_faces),
+            Some(own) => {
+                check_parts(&own.parts, &own.faces)?;
+                (own.num_vertices(), own.faces.len())
+            }
+        };
         if !self.time.is_finite() {
             return Err(format!("its time is {}", self.time));
         }
@@ -106,6 +134,8 @@ impl Frame {
     }
 
     pub(super) fn encode(&self, num_faces: usize) -> Vec<u8> {
+        let own = self.topology.as_ref();
+        let num_faces = own.map_or(num_faces, |own| own.faces.len());
         let num_values = self
             .vertex_fields
             .iter()
@@ -114,7 +144,8 @@ impl Frame {
         let mut bytes =
             Vec::with_capacity(64 + 24 * self.positions.len() + 4 * num_values.sum::<usize>());
         bytes.extend(MAGIC);
-        bytes.extend(VERSION.to_le_bytes());
+        let version = own.map_or(VERSION, |_| VERSION_WITH_FACES);
+        bytes.extend(version.to_le_bytes());
         bytes.extend(self.step.to_le_bytes());
         bytes.extend(self.time.to_le_bytes());
         bytes.extend((self.positions.len() as u64).to_le_bytes());
@@ -131,17 +162,34 @@ impl Frame {
                 bytes.extend(value.to_le_bytes());
             }
         }
+        if let Some(own) = own {
+            bytes.extend((own.parts.len() as u32).to_le_bytes());
+            for part in &own.parts {
+                bytes.extend((part.vertices.len() as u64).to_le_bytes());
+                bytes.extend((part.faces.len() as u64).to_le_bytes());
+            }
+            for corner in own.faces.iter().flatten() {
+                bytes.extend(corner.to_le_bytes());
+            }
+        }
         let checksum = crc32(&bytes);
         bytes.extend(checksum.to_le_bytes());
         bytes
     }
 
-    /// The frame in the bytes of a frame file; its lengths and numbers are not yet checked.
+    /// The frame in the bytes of a frame file; its lengths and numbers are not yet checked, and parts of its own have no
+    /// names: those are in the manifest.
     ///
     /// # Errors
     /// What is wrong, as the end of a sentence that begins with the file's name.
     pub fn decode(bytes: &[u8]) -> Result<Self, String> {
-        let body = checked_body(bytes, MAGIC, VERSION)?;
+        let has_faces = bytes.get(8..12) == Some(&VERSION_WITH_FACES.to_le_bytes()[..]);
+        let version = if has_faces {
+            VERSION_WITH_FACES
+        } else {
+            VERSION
+        };
+        let body = checked_body(bytes, MAGIC, version)?;
         let mut reader = ByteReader::new(body, Endian::Little);
         let header = read_header(&mut reader)?;
         let short = || "it ends too early for its header".to_string();
@@ -177,6 +225,10 @@ impl Frame {
         };
         let vertex_fields = read_fields(header.num_vertex_fields, header.num_vertices)?;
         let face_fields = read_fields(header.num_face_fields, header.num_faces)?;
+        let topology = match has_faces {
+            true => Some(read_topology(&mut reader, header.num_faces).ok_or_else(short)?),
+            false => None,
+        };
         if reader.remaining() > 0 {
             return Err(format!(
                 "{} bytes are left over at its end",
@@ -190,6 +242,7 @@ impl Frame {
             positions,
             vertex_fields,
             face_fields,
+            topology,
         })
     }
 
@@ -202,10 +255,42 @@ impl Frame {
 /// The header in the first [`HEADER_LENGTH`] bytes.
 pub(super) fn decode_header(bytes: &[u8]) -> Result<Header, String> {
     let mut reader = ByteReader::new(bytes, Endian::Little);
-    if reader.take(8) != Some(MAGIC) || reader.u32() != Some(VERSION) {
+    let is_ours = reader.take(8) == Some(MAGIC);
+    if !is_ours || !matches!(reader.u32(), Some(VERSION | VERSION_WITH_FACES)) {
         return Err("it does not start as a frame of this version does".to_string());
     }
     read_header(&mut reader)
+}
+
+fn read_topology(reader: &mut ByteReader, num_faces: usize) -> Option<FrameTopology> {
+    let count = reader.u32()? as usize;
+    // Counts are not trusted with memory that the file does not have.
+    if count.checked_mul(16)? > reader.remaining() {
+        return None;
+    }
+    let mut parts: Vec<Part> = Vec::with_capacity(count);
+    for _ in 0..count {
+        let sizes = [reader.u64()?, reader.u64()?];
+        let [vertices, faces] = sizes.map(|size| usize::try_from(size).ok());
+        let (first, first_face) = parts
+            .last()
+            .map_or((0, 0), |p| (p.vertices.end, p.faces.end));
+        parts.push(Part {
+            name: String::new(),
+            kind: PartKind::Shell,
+            thickness: 0.0,
+            vertices: first..first.checked_add(vertices?)?,
+            faces: first_face..first_face.checked_add(faces?)?,
+            solid: None,
+        });
+    }
+    let bytes = reader.take(num_faces.checked_mul(12)?)?;
+    let mut corners = ByteReader::new(bytes, Endian::Little);
+    let mut faces = Vec::with_capacity(num_faces);
+    while let (Some(a), Some(b), Some(c)) = (corners.u32(), corners.u32(), corners.u32()) {
+        faces.push([a, b, c]);
+    }
+    Some(FrameTopology { parts, faces })
 }
 
 fn read_header(reader: &mut ByteReader) -> Result<Header, String> {

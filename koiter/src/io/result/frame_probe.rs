@@ -138,6 +138,7 @@ mod tests {
                 .collect(),
             vertex_fields: vec![field("heat", &[1.0, 2.0, 3.0, 4.0])],
             face_fields: vec![field("strain", &[0.1, 0.2]), field("h", &[7.0, 8.0])],
+            topology: None,
         };
         frame.encode(2)
     }

@@ -115,47 +115,7 @@ impl Manifest {
     /// # Errors
     /// What is wrong, as the end of a sentence that begins with the file's name.
     pub fn check(&self, faces: &[[u32; 3]]) -> Result<(), String> {
-        let (mut next_vertex, mut next_face) = (0, 0);
-        for part in &self.parts {
-            let Part {
-                name,
-                thickness,
-                vertices: v,
-                faces: f,
-                ..
-            } = part;
-            if v.start != next_vertex || f.start != next_face || v.end < v.start || f.end < f.start
-            {
-                return Err(format!(
-                    "part '{name}' has vertices {v:?} and faces {f:?}, but the parts before end at vertex \
-                     {next_vertex} and face {next_face}"
-                ));
-            }
-            if !(thickness.is_finite() && *thickness >= 0.0) {
-                return Err(format!("part '{name}' has thickness {thickness}"));
-            }
-            (next_vertex, next_face) = (v.end, f.end);
-        }
-        if next_face != faces.len() {
-            return Err(format!(
-                "the parts have {next_face} faces, but there are {}",
-                faces.len()
-            ));
-        }
-        for part in &self.parts {
-            for face in part.faces.clone() {
-                if let Some(v) = faces[face]
-                    .iter()
-                    .find(|&&v| !part.vertices.contains(&(v as usize)))
-                {
-                    let (name, range) = (&part.name, &part.vertices);
-                    return Err(format!(
-                        "face {face} of part '{name}' uses vertex {v}, outside {range:?}"
-                    ));
-                }
-            }
-        }
-        Ok(())
+        check_parts(&self.parts, faces)
     }
 
     pub(super) fn to_json(&self) -> Result<String, serde_json::Error> {
@@ -229,6 +189,50 @@ impl Manifest {
             }),
         }
     }
+}
+
+/// See [`Manifest::check`].
+pub(super) fn check_parts(parts: &[Part], faces: &[[u32; 3]]) -> Result<(), String> {
+    let (mut next_vertex, mut next_face) = (0, 0);
+    for part in parts {
+        let Part {
+            name,
+            thickness,
+            vertices: v,
+            faces: f,
+            ..
+        } = part;
+        if v.start != next_vertex || f.start != next_face || v.end < v.start || f.end < f.start {
+            return Err(format!(
+                "part '{name}' has vertices {v:?} and faces {f:?}, but the parts before end at vertex \
+                     {next_vertex} and face {next_face}"
+            ));
+        }
+        if !(thickness.is_finite() && *thickness >= 0.0) {
+            return Err(format!("part '{name}' has thickness {thickness}"));
+        }
+        (next_vertex, next_face) = (v.end, f.end);
+    }
+    if next_face != faces.len() {
+        return Err(format!(
+            "the parts have {next_face} faces, but there are {}",
+            faces.len()
+        ));
+    }
+    for part in parts {
+        for face in part.faces.clone() {
+            if let Some(v) = faces[face]
+                .iter()
+                .find(|&&v| !part.vertices.contains(&(v as usize)))
+            {
+                let (name, range) = (&part.name, &part.vertices);
+                return Err(format!(
+                    "face {face} of part '{name}' uses vertex {v}, outside {range:?}"
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 fn not_a_result(folder: &Path, reason: String) -> ResultError {

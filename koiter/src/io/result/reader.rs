@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::error::{read_file, read_if_there, unreadable, while_trying};
 use super::frame::HEADER_LENGTH;
 use super::{
-    FRAMES, Frame, FrameInfo, Manifest, REST, ResultError, STATS, SUMMARY, TOPOLOGY,
+    FRAMES, Frame, FrameInfo, Manifest, Part, REST, ResultError, STATS, SUMMARY, TOPOLOGY,
     decode_topology, frame_path,
     frame_probe::{Element, FrameProbe, ProbeError, probe_frame},
     rest_file,
@@ -89,6 +89,20 @@ impl ResultReader {
         &self.faces
     }
 
+    /// The parts in a frame.
+    pub fn parts_in<'a>(&'a self, frame: &'a Frame) -> &'a [Part] {
+        let own = frame.topology.as_ref();
+        own.map_or(&self.manifest.parts, |own| &own.parts)
+    }
+
+    /// The faces in a frame, by the vertex numbers of the whole.
+    pub fn faces_in<'a>(&'a self, frame: &'a Frame) -> &'a [[u32; 3]] {
+        frame
+            .topology
+            .as_ref()
+            .map_or(&self.faces, |own| &own.faces)
+    }
+
     /// Number of frames when the folder was opened or last refreshed.
     pub fn len(&self) -> usize {
         self.len
@@ -119,7 +133,23 @@ impl ResultReader {
             path: path.clone(),
             reason,
         };
-        let frame = Frame::decode(&bytes).map_err(broken)?;
+        let mut frame = Frame::decode(&bytes).map_err(broken)?;
+        if let Some(own) = &mut frame.topology {
+            let parts = &self.manifest.parts;
+            if own.parts.len() != parts.len() {
+                let (found, expected) = (own.parts.len(), parts.len());
+                return Err(broken(format!(
+                    "it has {found} parts, the manifest {expected}"
+                )));
+            }
+            for (own, part) in own.parts.iter_mut().zip(parts) {
+                *own = Part {
+                    vertices: own.vertices.clone(),
+                    faces: own.faces.clone(),
+                    ..part.clone()
+                };
+            }
+        }
         frame
             .check(self.manifest.num_vertices(), self.manifest.num_faces())
             .map_err(broken)?;

@@ -45,6 +45,7 @@ fn frame(step: u64) -> Frame {
                 values: vec![1.0, 2.0, f32::INFINITY],
             },
         ],
+        topology: None,
     }
 }
 

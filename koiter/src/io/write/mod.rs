@@ -95,6 +95,11 @@ pub enum WriteError {
         /// Number of faces.
         num_faces: usize,
     },
+    /// A film of faces that change, in a format that moves vertices only.
+    #[error(
+        "faces burn away from frame to frame, which a GLB film cannot show; export one frame, or all as vtu"
+    )]
+    ChangingFaces,
     /// A frame to be exported could not be read.
     #[error(transparent)]
     Result(#[from] ResultError),
@@ -114,10 +119,10 @@ impl<'a> MeshWithFields<'a> {
     pub fn of_frame(result: &'a ResultReader, frame: &'a Frame) -> Self {
         Self {
             positions: &frame.positions,
-            faces: result.faces(),
+            faces: result.faces_in(frame),
             vertex_fields: &frame.vertex_fields,
             face_fields: &frame.face_fields,
-            parts: &result.manifest().parts,
+            parts: result.parts_in(frame),
             up_axis: result.manifest().up_axis,
         }
     }

@@ -191,6 +191,8 @@ impl Measurement<'_> {
         };
         Model {
             shells: vec![shell],
+            double_layers: Vec::new(),
+            heat_sources: Vec::new(),
             obstacles: Vec::new(),
             constraints: Vec::new(),
             gravity: Vec3::zeros(),

@@ -1,5 +1,6 @@
 //! Checks that need no mesh: ranges, names, and keys that must stand alone.
 
+mod double_layer;
 mod friction;
 mod loads;
 mod motion;
@@ -33,13 +34,14 @@ pub(super) type Checked = Result<(), SceneError>;
 /// Checks a whole scene; the first mistake is returned with its path.
 pub(super) fn check(spec: &SceneSpec) -> Checked {
     phases::check_phases(spec)?;
-    if spec.shell.is_empty() {
+    if spec.shell.is_empty() && spec.double_layer.is_empty() {
         return Err(error(
             Kind::MissingKey,
             "",
             "the scene has no [[shell]]".into(),
         ));
     }
+    double_layer::check_double_layers(spec)?;
     if let Some(schedule) = &spec.gravity_scale {
         check_schedule("gravity_scale", schedule)?;
     }
@@ -168,7 +170,9 @@ pub(super) fn check_direction(path: &str, direction: [f64; 3]) -> Checked {
 
 fn check_constraint(path: &str, constraint: &ConstraintSpec, spec: &SceneSpec) -> Checked {
     let at = |key: &str| format!("{path}.{key}");
-    check_shell_name(&at("shell"), &constraint.shell, spec)?;
+    if spec.double_layer.is_empty() {
+        check_shell_name(&at("shell"), &constraint.shell, spec)?;
+    }
     check_select(&at("select"), &constraint.select)?;
     let axes = &constraint.axes;
     let repeated = axes

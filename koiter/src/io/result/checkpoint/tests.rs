@@ -36,6 +36,12 @@ fn checkpoint() -> Checkpoint {
                 flow: vec![0.5, 0.0],
             }],
             angles: vec![vec![3.5, -0.25], vec![]],
+            double_layers: vec![BurningState {
+                positions: vec![Vec3::new(1.0, -2.0, 0.5); 2],
+                velocities: vec![Vec3::zeros(), Vec3::x()],
+                temperatures: vec![293.0, 506.5],
+                mass_ratios: vec![1.0, 0.625],
+            }],
             solver: WorkspaceHistory {
                 changing_pairs: vec![[0, 1], [0, 7]],
                 node_order: vec![2, 0, 1],

@@ -47,9 +47,12 @@ pub fn glb_bytes(
     look: &GlbLook,
 ) -> Result<Vec<u8>, WriteError> {
     assert!(!frames.is_empty(), "a GLB file has at least one frame");
-    let parts = &result.manifest().parts;
-    assert_eq!(look.part_colors.len(), parts.len(), "one colour a part");
     let first = read(result, frames[0])?;
+    if frames.len() > 1 && first.topology.is_some() {
+        return Err(WriteError::ChangingFaces);
+    }
+    let parts = result.parts_in(&first);
+    assert_eq!(look.part_colors.len(), parts.len(), "one colour a part");
     let times = frame_times(result, frames)?;
     let mut arrays = Arrays::default();
     let mut shapes: Vec<Shape> = parts
@@ -144,7 +147,7 @@ impl<'a> Shape<'a> {
         arrays: &mut Arrays,
     ) -> Self {
         let offset = part.vertices.start as u32;
-        let faces: Vec<[u32; 3]> = result.faces()[part.faces.clone()]
+        let faces: Vec<[u32; 3]> = result.faces_in(frame)[part.faces.clone()]
             .iter()
             .map(|corners| corners.map(|vertex| vertex - offset))
             .collect();

@@ -1,0 +1,46 @@
+//! Burning cloth and paper: double layers of springs that heat, lose mass, shrink, wrinkle and burn through.
+//!
+//! A [`BurningShell`] is stepped by projections onto lengths of springs and not by the minimisation of an energy: it shares
+//! nothing with the elastic shells of this library but positions and bodies. A step is, in this order:
+//!
+//! | what | where |
+//! | --- | --- |
+//! | sources, cooling, conduction | [`HeatSource`], [`Conduction`] |
+//! | mass loss, target lengths | [`BurningOptions`] |
+//! | the surface that is left, springs and pieces | [`RenderSurface`], [`Remaining`] |
+//! | motion, projections, bodies | [`BurningShell`], [`Projection`], [`Collider`] |
+//!
+//! Paper: "Shrinkage, wrinkling and ablation of burning cloth and paper". Where its printed formulas cannot be meant
+//! (signs, missing factors), the files say what stands in their place.
+
+mod ablation;
+mod collisions;
+mod double_layer;
+mod error;
+mod global_solve;
+mod heat;
+mod mass;
+mod measures;
+mod network;
+mod projection;
+mod quad_mesh;
+mod springs;
+mod stepper;
+mod surface;
+mod texture;
+
+pub use ablation::Remaining;
+pub use collisions::{Collider, ColliderShape};
+pub use double_layer::{COLORS, Color, DoubleLayer};
+pub use error::{BurningError, QuadMeshError, TextureError};
+pub use global_solve::{GlobalLimits, GlobalSolve};
+pub use heat::{Conduction, DIMENSION_FACTOR, HeatSource};
+pub use mass::BurningOptions;
+pub use measures::BurningMeasures;
+pub use network::{Errors, Mobility, Network, StepLimits};
+pub use projection::{Lengths, Projection, ProjectionMethod, ProjectionOptions, ProjectionReport};
+pub use quad_mesh::{MAX_VALENCE, QuadEdge, QuadMesh, QuadSide};
+pub use springs::Springs;
+pub use stepper::{BurningReport, BurningSetup, BurningShell, BurningState, Surroundings};
+pub use surface::{Between, RenderSurface};
+pub use texture::Texture;

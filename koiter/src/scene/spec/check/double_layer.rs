@@ -1,0 +1,128 @@
+//! Checks of double layers and sources of heat.
+
+use super::motion::check_motion;
+use super::{Checked, all_finite, check_rotation, error, exactly_one, positive, unique};
+use crate::scene::error::SceneErrorKind as Kind;
+use crate::scene::spec::{DoubleLayerSpec, HeatSourceSpec, SceneSpec};
+
+/// Checks what a scene with double layers has beside them.
+pub(super) fn check_double_layers(spec: &SceneSpec) -> Checked {
+    let names = spec
+        .double_layer
+        .iter()
+        .map(|layer| Some(layer.name.as_str()));
+    unique("double_layer", names)?;
+    unique(
+        "heat_source",
+        spec.heat_source
+            .iter()
+            .map(|source| Some(source.name.as_str())),
+    )?;
+    for layer in &spec.double_layer {
+        check_layer(&format!("double_layer.{}", layer.name), layer)?;
+    }
+    for source in &spec.heat_source {
+        check_source(&format!("heat_source.{}", source.name), source)?;
+    }
+    match (spec.double_layer.first(), spec.heat_source.first()) {
+        (None, Some(source)) => {
+            let message =
+                "a source of heat acts on double layers, and the scene has none".to_owned();
+            Err(error(
+                Kind::Conflict,
+                &format!("heat_source.{}", source.name),
+                message,
+            ))
+        }
+        (None, None) => Ok(()),
+        (Some(_), _) => check_company(spec),
+    }
+}
+
+/// What has no meaning beside a double layer is refused rather than ignored.
+fn check_company(spec: &SceneSpec) -> Checked {
+    let others = [
+        ("shell", !spec.shell.is_empty()),
+        ("phase", !spec.phase.is_empty()),
+        ("symmetry", !spec.symmetry.is_empty()),
+        ("load", !spec.load.is_empty()),
+        ("process", !spec.process.is_empty()),
+        ("probe", !spec.probe.is_empty()),
+    ];
+    if let Some((key, _)) = others.iter().find(|(_, is_there)| *is_there) {
+        let message = format!("a scene with a [[double_layer]] has no [[{key}]]");
+        return Err(error(Kind::Conflict, &format!("{key}.0"), message)
+            .with_help("double layers are stepped by projections, apart from elastic shells"));
+    }
+    for obstacle in &spec.obstacle {
+        if obstacle.plane.is_none() && obstacle.sphere.is_none() {
+            let message = "double layers collide with planes and spheres only".to_owned();
+            return Err(error(
+                Kind::Conflict,
+                &format!("obstacle.{}", obstacle.name),
+                message,
+            ));
+        }
+    }
+    for (index, constraint) in spec.constraint.iter().enumerate() {
+        let path = constraint.path(index);
+        let is_partial = constraint.axes.len() != 3;
+        for (key, given) in [
+            ("axes", is_partial),
+            ("clamp", constraint.clamp),
+            ("from", constraint.from.is_some()),
+        ] {
+            if given {
+                let message = format!(
+                    "the key '{key}' has no meaning for a double layer: its corners are held as a whole, from the start"
+                );
+                return Err(error(Kind::Conflict, &format!("{path}.{key}"), message));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_layer(path: &str, layer: &DoubleLayerSpec) -> Checked {
+    let mesh = &layer.mesh;
+    let at = |key: &str| format!("{path}.mesh.{key}");
+    exactly_one(
+        &format!("{path}.mesh"),
+        &mesh.given_shapes(),
+        "file, grid, torus",
+    )?;
+    positive(&at("scale"), mesh.scale, "")?;
+    all_finite(&at("translate"), &mesh.translate)?;
+    if let Some(rotate) = &mesh.rotate {
+        check_rotation(&at("rotate"), rotate)?;
+    }
+    for (key, count) in [
+        ("sweeps", layer.projection.sweeps),
+        ("iterations", layer.projection.iterations),
+    ] {
+        if count == 0 {
+            let message = format!("{key} must be at least 1");
+            return Err(error(
+                Kind::OutOfRange,
+                &format!("{path}.projection.{key}"),
+                message,
+            ));
+        }
+    }
+    positive(
+        &format!("{path}.projection.longest_move"),
+        layer.projection.longest_move,
+        "",
+    )
+}
+
+fn check_source(path: &str, source: &HeatSourceSpec) -> Checked {
+    let at = |key: &str| format!("{path}.{key}");
+    positive(&at("temperature"), source.temperature, "K")?;
+    positive(&at("rate"), source.rate, "1/s")?;
+    if let Some(sphere) = &source.sphere {
+        positive(&at("sphere.radius"), sphere.radius, "m")?;
+        all_finite(&at("sphere.center"), &sphere.center)?;
+    }
+    check_motion(&at("motion"), &source.motion)
+}
