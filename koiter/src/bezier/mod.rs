@@ -30,6 +30,7 @@ mod mapped_contact;
 mod newton;
 mod pose;
 pub mod problems;
+pub mod procedures;
 mod rotation;
 mod section;
 mod shell;
