@@ -18,6 +18,15 @@ friction = 0.5
 name = "sheet"
 material = { preset = "cotton", layers = [{ thickness = 1e-3, young = 1e6 }] }
 mesh.grid = { size = [1.0, 1.0], cells = [2, 2] }
+[[double_layer]]
+name = "paper"
+mesh.grid = { size = [1.0, 1.0], cells = [2, 2] }
+thickness = 1e-3
+area_density = 0.1
+[[heat_source]]
+name = "ball"
+temperature = 1000.0
+rate = 1.0
 [[obstacle]]
 name = "floor"
 plane = {}
