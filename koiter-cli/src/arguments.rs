@@ -5,6 +5,7 @@ mod bezier;
 mod modes;
 mod scenes;
 mod studies;
+mod sweep;
 mod validation;
 mod viewing;
 
@@ -20,6 +21,7 @@ pub(crate) use studies::{
     BurningArguments, ConvergenceArguments, CreasedVeeArguments, DirectorSource,
     DiscreteShellsArguments, DiscreteShellsCase, EnergyArguments, RestCurvature, bending_models,
 };
+pub(crate) use sweep::SweepArguments;
 pub(crate) use validation::ValidateArguments;
 pub(crate) use viewing::ViewArguments;
 
@@ -51,6 +53,8 @@ pub(crate) struct Arguments {
 pub(crate) enum Verb {
     /// Runs a scene into a result folder: frames, figures, pictures and a film.
     Run(RunArguments),
+    /// Runs a family of scenes side by side and collects a table and pictures.
+    Sweep(SweepArguments),
     /// Reads and checks a scene, or every frame of a result; runs nothing.
     Check(CheckArguments),
     /// Opens results, meshes or a run that goes on in the browser: plays, compares, plots.

@@ -27,6 +27,7 @@ mod probes;
 mod render;
 mod run;
 mod scene_source;
+mod sweep;
 mod validate;
 mod view;
 
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
     logger::install();
     let result = match arguments.verb {
         Verb::Run(arguments) => run::run(&arguments),
+        Verb::Sweep(arguments) => sweep::sweep(&arguments),
         Verb::Check(arguments) => check::check(&arguments),
         Verb::View(arguments) => view::view(&arguments),
         Verb::Render(arguments) => render::render(&arguments),

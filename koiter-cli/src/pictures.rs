@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
 use koiter::io::result::{Frame, ResultReader};
+use koiter::scene::SceneFile;
 use koiter::scene::spec::OutputSpec;
 use koiter_render::{
     Bounds, Camera, CameraView, ColorBy, ColorMap, Film, FilmError, Image, Quality, RenderOptions,
-    render,
+    Rgb, contact_sheet, render,
 };
 
 use crate::failure::Failure;
@@ -20,6 +21,8 @@ use pace::{decimals, pace};
 
 /// Films of a run: small, so that they do not keep the user waiting.
 const FILM_SIZE: (u32, u32) = (640, 360);
+/// Pictures of a sweep.
+const GRID_SIZE: (u32, u32) = (480, 300);
 /// Most frames of the film after a run; of longer runs every second, third, … frame is shown.
 const MAX_FILM_FRAMES: usize = 150;
 /// Share of the values that the colours cover; the rest (tight folds) is drawn in the last colour.
@@ -93,6 +96,41 @@ pub(crate) fn after_run(
     album.look.size = FILM_SIZE;
     let film = album.film_in_any_format(folder, quiet)?;
     Ok(vec![picture, film])
+}
+
+/// Pictures of the ends of several results as one, row by row; white where there is none. Whether there was any.
+pub(crate) fn grid(folders: &[PathBuf], columns: usize, path: &Path) -> Result<bool, Failure> {
+    let ends: Vec<Option<Image>> = folders.iter().map(|folder| end_of(folder)).collect();
+    if ends.iter().all(Option::is_none) {
+        return Ok(false);
+    }
+    let (width, height) = GRID_SIZE;
+    let white = || Image::new(width, height, Rgb(1.0, 1.0, 1.0));
+    let images: Vec<Image> = (ends.into_iter())
+        .map(|end| end.unwrap_or_else(white))
+        .collect();
+    let sheet = contact_sheet(&images, columns).map_err(Failure::run)?;
+    sheet.write_png(path).map_err(Failure::run)?;
+    Ok(true)
+}
+
+/// The last frame as the scene of a result wants it shown; `None` if there is no frame.
+fn end_of(folder: &Path) -> Option<Image> {
+    let reader = ResultReader::open(folder).ok()?;
+    let scene = SceneFile::parse("manifest.json", &reader.manifest().scene_text, &[]).ok()?;
+    let output = scene.spec.output;
+    let look = Look {
+        size: GRID_SIZE,
+        camera: output
+            .camera
+            .and_then(|view| view.parse().ok())
+            .unwrap_or_default(),
+        color: output.color,
+        wireframe: false,
+    };
+    let last = reader.len().checked_sub(1)?;
+    let album = Album::open(&reader, look).ok()?;
+    album.draw(last, Quality::Still).ok()
 }
 
 /// A result folder as pictures of one look.

@@ -4,16 +4,14 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::Path;
 
-use koiter::Vec3;
 use koiter::io::result::{ResultError, keep_lines};
+use koiter::scene::Probe;
 use koiter::scene::Simulation;
-use koiter::scene::{Observable, Probe};
 use serde_json::{Map, Value, json};
 
 /// Columns of the probes with their values.
 pub(crate) fn values_by_column(probes: &[Probe], simulation: &Simulation) -> Vec<(String, f64)> {
-    let state = State(simulation);
-    let of_probe = |probe: &Probe| probe.columns().into_iter().zip(probe.measure(&state));
+    let of_probe = |probe: &Probe| probe.columns().into_iter().zip(probe.measure(simulation));
     probes.iter().flat_map(of_probe).collect()
 }
 
@@ -82,11 +80,10 @@ impl<'a> ProbeWriter<'a> {
 
     /// Measures and writes a row; it is on its way to the disk when this returns.
     pub(crate) fn write(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
-        let state = State(simulation);
         self.last = self
             .probes
             .iter()
-            .map(|probe| probe.measure(&state))
+            .map(|probe| probe.measure(simulation))
             .collect();
         let Some(file) = &mut self.file else {
             return Ok(());
@@ -109,29 +106,5 @@ impl<'a> ProbeWriter<'a> {
                 .zip(self.last.iter().map(value))
                 .collect::<Map<_, _>>(),
         )
-    }
-}
-
-struct State<'a>(&'a Simulation);
-
-impl Observable for State<'_> {
-    fn load_factor(&self) -> f64 {
-        self.0.load_factor().unwrap_or(0.0)
-    }
-
-    fn positions(&self, shell: usize) -> Vec<Vec3> {
-        self.0.shell_positions(shell).to_vec()
-    }
-
-    fn velocities(&self, shell: usize) -> Vec<Vec3> {
-        self.0.shell_velocities(shell).to_vec()
-    }
-
-    fn energies(&self) -> Vec<(String, f64)> {
-        self.0.energies()
-    }
-
-    fn reaction(&self, constraint: usize) -> Vec3 {
-        self.0.reaction(constraint)
     }
 }

@@ -93,6 +93,14 @@ impl Image {
         written
     }
 
+    /// The bytes of a PNG file.
+    pub fn png_bytes(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        self.encode_png(&mut bytes, png::Compression::Balanced)
+            .expect("a picture has as many bytes as its size says, and memory takes them");
+        bytes
+    }
+
     pub(crate) fn encode_png(
         &self,
         sink: impl Write,

@@ -63,4 +63,4 @@ pub use film::Film;
 pub use image::{Image, contact_sheet, partial_files};
 pub use options::{Background, ColorBy, Light, Quality, RenderOptions};
 pub use render::render;
-pub use scene::{Bounds, FieldView, Ground, PartKind, PartView, Scene};
+pub use scene::{Bounds, FieldView, Ground, PartKind, PartView, Scene, level_floor};

@@ -56,6 +56,18 @@ pub enum Ground {
     At(f64),
 }
 
+/// Height of an obstacle that is a level rectangle: floors are shown as the [`Ground`] rather than as two triangles.
+#[must_use]
+pub fn level_floor(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> Option<f64> {
+    if faces.len() != 2 {
+        return None;
+    }
+    let height = positions.first()?[2];
+    (positions.iter())
+        .all(|position| (position[2] - height).abs() < 1e-9)
+        .then_some(height)
+}
+
 impl<'a> PartView<'a> {
     /// A shell in the default blue.
     #[must_use]

@@ -1,7 +1,7 @@
 //! A frame of a result as the renderer wants it.
 
 use koiter::io::result::{Frame, Part, PartKind, ResultReader};
-use koiter_render::{Bounds, FieldView, Ground, PartView, Rgb, Scene};
+use koiter_render::{Bounds, FieldView, Ground, PartView, Rgb, Scene, level_floor};
 
 /// The parts of a frame and their faces, each by its own vertex numbers.
 struct Topology {
@@ -109,18 +109,12 @@ impl FrameView {
         &self.positions[self.topology.parts[index].vertices.clone()]
     }
 
-    /// Height of a part that is a level rectangle: this is how an obstacle plane is shown.
     fn floor(&self, index: usize) -> Option<f64> {
-        if self.topology.parts[index].kind != PartKind::Obstacle
-            || self.topology.faces[index].len() != 2
-        {
-            return None;
+        match self.topology.parts[index].kind {
+            PartKind::Obstacle => {
+                level_floor(self.positions_of(index), &self.topology.faces[index])
+            }
+            _ => None,
         }
-        let positions = self.positions_of(index);
-        let height = positions.first()?[2];
-        positions
-            .iter()
-            .all(|position| (position[2] - height).abs() < 1e-9)
-            .then_some(height)
     }
 }

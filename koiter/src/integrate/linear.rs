@@ -236,6 +236,15 @@ impl System {
         }
     }
 
+    /// Exact second derivatives of the elastic energies, clamps and symmetry included.
+    ///
+    /// # Errors
+    /// [`LinearError::Dense`].
+    pub fn elastic_hessian(&mut self, q: &[f64]) -> Result<SymmetricMatrix, LinearError> {
+        self.check_sparse(q)?;
+        Ok(self.second_derivatives(q, Part::Elastic).0)
+    }
+
     /// Exact second derivatives of a part of the energies, and the gradient of all.
     pub(super) fn second_derivatives(
         &mut self,

@@ -35,7 +35,7 @@ pub use state::{Memory, State};
 pub use system::{Prescribed, System};
 
 /// Advances a state.
-pub trait Integrator: Send {
+pub trait Integrator: Send + Sync {
     /// Called before a step of size `dt` [s] while loads, clamps and what is held are still as at its start: for what a method has to know
     /// of that state and does not remember.
     ///

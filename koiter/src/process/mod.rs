@@ -36,7 +36,7 @@ pub struct Window<'a> {
 }
 
 /// Changes a rest state over time.
-pub trait Process: Send {
+pub trait Process: Send + Sync {
     /// Moves the rest state over one step.
     fn advance(&self, rest: &mut RestState, window: &Window<'_>);
 }

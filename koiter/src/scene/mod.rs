@@ -23,6 +23,7 @@ pub mod measure;
 pub mod model;
 mod modes;
 mod obstacles;
+mod outside;
 mod phases;
 mod position_bending;
 pub mod schedule;
@@ -73,6 +74,7 @@ pub use self::{
     holds::Anchor,
     loads::LoadTotal,
     material_models::MaterialModelInfo,
+    outside::ChangeError,
     phases::{PhaseSteps, Timeline},
     simulation::{Simulation, SystemStats},
     snapshot::{RestoreError, Snapshot},

@@ -1,5 +1,6 @@
 //! What a scene measures, a row a step.
 
+use super::simulation::Simulation;
 use super::spec::{Axis, ProbeQuantity};
 use crate::Vec3;
 
@@ -49,6 +50,28 @@ pub trait Observable {
     fn reaction(&self, constraint: usize) -> Vec3;
     /// The factor on scheduled loads; 0 without arc length.
     fn load_factor(&self) -> f64;
+}
+
+impl Observable for Simulation {
+    fn positions(&self, shell: usize) -> Vec<Vec3> {
+        self.shell_positions(shell)
+    }
+
+    fn velocities(&self, shell: usize) -> Vec<Vec3> {
+        self.shell_velocities(shell)
+    }
+
+    fn energies(&self) -> Vec<(String, f64)> {
+        self.energies()
+    }
+
+    fn reaction(&self, constraint: usize) -> Vec3 {
+        self.reaction(constraint)
+    }
+
+    fn load_factor(&self) -> f64 {
+        self.load_factor().unwrap_or(0.0)
+    }
 }
 
 impl Probe {
