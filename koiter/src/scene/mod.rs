@@ -6,6 +6,7 @@
 
 mod arc_length;
 mod assemble;
+mod bending_caveats;
 mod bending_models;
 mod burning;
 mod clamps;

@@ -1,9 +1,9 @@
 //! Numbers that can be simulated but are probably a slip of unit.
 
-use super::elastic::rest_surface;
+use super::bending_caveats::bending_caveat;
 use super::error::Warning;
 use super::free_parts::FreePart;
-use super::model::{BendingModel, MembraneModel, Model, Motion, ObstacleShape, Shell};
+use super::model::{MembraneModel, Model, Motion, ObstacleShape, Shell};
 use super::spec::{MeshSpec, SceneSpec, Units};
 
 /// Softer than any gel, harder than diamond.
@@ -24,8 +24,6 @@ const LARGE_TURN: f64 = 30.0;
 const LARGE_GRAVITY: f64 = 1e4;
 /// The theory of thin shells and the contact stencils want triangles much larger than the thickness.
 const THICKNESS_TO_EDGE: f64 = 0.1;
-/// Hinges of a rest mesh below this angle [rad] are those of a plane whose points were rounded to single precision.
-const FLAT: f64 = 1e-5;
 
 /// Everything implausible, in the order of the shells; locations are not yet known.
 pub(super) fn find(model: &Model, spec: &SceneSpec) -> Vec<Warning> {
@@ -175,62 +173,6 @@ fn check_springs(shell: &Shell, path: &str) -> Option<Warning> {
     );
     let help = "shear is as stiff as the material's; membrane = \"koiter\" has any ratio";
     Some(warning(message, format!("{path}.membrane"), help))
-}
-
-/// What the bending model of a shell does not do, in words, and what helps.
-pub(super) fn bending_caveat(shell: &Shell) -> Option<(String, &'static str)> {
-    let name = shell.bending.info().name;
-    match shell.bending {
-        BendingModel::Ds2nd => Some((
-            format!(
-                "the energy of {name} is wrong, mostly far too small: it depends on the mesh and on a barrier; and every \
-                 rest shape counts as a flat one"
-            ),
-            "it is here as it was studied; use bac for results",
-        )),
-        BendingModel::QbCr | BendingModel::QbPl | BendingModel::QbInt
-            if has_rest_curvature(shell) =>
-        {
-            Some((
-                format!(
-                    "{name} ignores that the rest shape is curved: it bends towards a flat one"
-                ),
-                "quadratic bending is for flat rest shapes; bac, dcs, dso and ds-theta keep a curved one",
-            ))
-        }
-        BendingModel::QbCr
-        | BendingModel::QbPl
-        | BendingModel::QbInt
-        | BendingModel::Bac
-        | BendingModel::Dcs
-        | BendingModel::Dso
-        | BendingModel::Dkt
-        | BendingModel::MeAverage
-        | BendingModel::DsTheta
-        | BendingModel::DsTan
-        | BendingModel::ChEs
-        | BendingModel::ChFs
-        | BendingModel::None => None,
-    }
-}
-
-/// Whether the rest curvature is taken from the rest mesh, and that is not flat.
-fn has_rest_curvature(shell: &Shell) -> bool {
-    if !shell.rest_curved {
-        return false;
-    }
-    let rest = rest_surface(shell);
-    let mut edges = rest.mesh.edge_faces().iter();
-    edges.any(|sides| {
-        let [Some(first), Some(second)] = sides else {
-            return false;
-        };
-        let [n0, n1] = [first, second].map(|face| {
-            let [a, b, c] = rest.corners(face.0 as usize);
-            (b - a).cross(&(c - a))
-        });
-        n0.cross(&n1).norm().atan2(n0.dot(&n1)) > FLAT
-    })
 }
 
 fn warning(message: String, path: String, help: &str) -> Warning {

@@ -15,12 +15,12 @@ pub use refinement::{Refinement, Trend};
 use std::ops::Range;
 
 use super::assemble::{BuildError, Unknowns, write_points};
+use super::bending_caveats::bending_caveat;
 use super::composition_error::CompositionError;
 use super::elastic::Elastic;
 use super::model::{
     BendingModel, Composition, ContactOptions, IntegratorKind, Model, Shell, SolverOptions,
 };
-use super::warnings::bending_caveat;
 use crate::Vec3;
 use crate::assembly::Energy;
 use crate::energy::bending::ExtraUnknowns;
