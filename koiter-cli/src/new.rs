@@ -140,11 +140,18 @@ mod tests {
         let text = with_all_keys(&text_of(Template::Drape));
         let schema = koiter::scene::json_schema();
         let tables = [
-            // Loads and planes of symmetry are for engineers: the scenes rolled-strip and hinged-roof show them. Processes
-            // have a page of their own.
+            // Loads and planes of symmetry are for engineers: the scenes rolled-strip and hinged-roof show them. Processes,
+            // energies of one's own and what burns have pages of their own.
             (
                 &schema["properties"],
-                &["variants", "load", "symmetry", "process"][..],
+                &[
+                    "variants",
+                    "load",
+                    "symmetry",
+                    "process",
+                    "double_layer",
+                    "heat_source",
+                ][..],
             ),
             // Names for shapes that are not the sheet's start, and for experts.
             (

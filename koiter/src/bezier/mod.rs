@@ -2,14 +2,14 @@
 //!
 //! A node has a position x and a rotation R. Each of its triangles hangs two control points on it, by levers s that turn
 //! with the node, and shares a third; the cubic surface through the ten control points is, with ℓ_i a polynomial in the
-//! levers of corner i ([`control_points`]),
+//! levers of corner i (`control_points`),
 //!
 //! ```text
 //! T(ξ) = Σ_i N_i(ξ) x_i + R_i ℓ_i(ξ)
 //! ```
 //!
-//! Strains are small in the frame that goes with an element ([`frame`]): its energy is `½ dᵀ K d` with the deformation d
-//! of its corners in that frame, and forces are its exact derivatives ([`element`]). What is minimised is a sum of
+//! Strains are small in the frame that goes with an element (`frame`): its energy is `½ dᵀ K d` with the deformation d
+//! of its corners in that frame, and forces are its exact derivatives (`element`). What is minimised is a sum of
 //! [`Potential`]s over a [`Pose`]: it has rotations, so it is not the vector of unknowns of the other shells.
 //!
 //! Reference: Golembiovsky, Duriez, "Bezier Shell Finite Element for Interactive Surgical Simulation" (2012). The element
