@@ -94,6 +94,7 @@ impl Report {
             let row = match reader.frame(index) {
                 // What burns away has other faces in every frame: each is compared with itself.
                 Ok(frame) if frame.topology.is_some() => {
+                    report.compared_with = "each frame itself";
                     Row::new(index, &frame, &prepare(reader, None, &frame))
                 }
                 Ok(frame) => {

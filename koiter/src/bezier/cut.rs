@@ -100,6 +100,17 @@ impl BezierShell {
         if !opens {
             return Err(BezierError::PathTooShort { stops });
         }
+        // A path of another shell, such as this one before a cut.
+        let vertices = self.mesh().num_vertices() as u32;
+        let is_of_another = |node: &PathNode| match *node {
+            PathNode::Vertex(v) => v >= vertices,
+            PathNode::Crossing { edge, fraction } => {
+                edge.iter().any(|&v| v >= vertices) || !(fraction > 0.0 && fraction < 1.0)
+            }
+        };
+        if let Some(at) = path.nodes.iter().position(is_of_another) {
+            return Err(BezierError::PathBroken { from: at, to: at });
+        }
         let mut pieces = Pieces::new(self.mesh());
         let vertices: Vec<u32> = (path.nodes.iter())
             .map(|node| match *node {

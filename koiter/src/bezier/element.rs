@@ -48,11 +48,11 @@ pub(super) type ElementVector = SVector<f64, 18>;
 #[non_exhaustive]
 pub enum ElementKind {
     /// The cubic triangle with the central point by degree elevation and control points that follow the stretch:
-    /// converges on meshes of three directions; on irregular ones an error of 2 to 3 % of bending remains.
+    /// converges on meshes of three directions; on irregular ones it fails the patch test of bending.
     #[default]
     Bezier,
-    /// As printed in 2012. Inconsistent: it converges to a shell that is up to 80 % too stiff in bending and 11 to 17 % in
-    /// the plane. For comparison.
+    /// As printed in 2012. Inconsistent: it reproduces neither constant strain nor constant curvature and converges to
+    /// another, mostly stiffer shell. For comparison.
     BezierPaper,
     /// Discrete Kirchhoff bending and the optimal membrane triangle: converges on any mesh. The reference.
     DktAndes,

@@ -114,7 +114,10 @@ impl Interaction {
             ..NewtonLimits::for_edges(edge)
         };
         let carried = |drag: &Drag| (Carried::new(shell, &drag.point), *drag);
-        let mut drags = Drags(self.drags.iter().map(carried).collect());
+        // A drag of an element that a cut took away pulls at nothing.
+        let elements = shell.elements().len();
+        let held = (self.drags.iter()).filter(|drag| drag.point.element < elements);
+        let mut drags = Drags(held.map(carried).collect());
         let mut load = self.load.clone();
         let others: &mut [&mut dyn Potential] = &mut [&mut drags, &mut load];
         let mut report = FrameReport::default();

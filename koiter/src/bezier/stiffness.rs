@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A control point that hangs rigidly on its corner does not follow the stretch of the element, so the printed membrane
-//! pays 11 to 17 % too much energy for constant strain on any mesh. [`Attachment::Stretched`] interpolates u and v linearly
+//! pays too much energy for constant strain, however fine the mesh. [`Attachment::Stretched`] interpolates u and v linearly
 //! and adds the rotations of the corners relative to the element, `θ_z − ω` with `ω = ½ (v_x − u_y)`.
 //! Reference: Golembiovsky and Duriez (2012), Eqs. (15)–(29), with the signs of Eq. (33).
 

@@ -165,9 +165,9 @@ pub enum BurningError {
         /// What it must be.
         expected: &'static str,
     },
-    /// A step led to a position that is not finite.
+    /// A step led to a value that is not finite.
     #[error(
-        "particle {particle} of a double layer went to a place that is not finite in the step to t = {time} s; make dt smaller"
+        "particle {particle} of a double layer has a place, a velocity or a temperature that is not finite after the step to t = {time} s; make dt smaller"
     )]
     NotFinite {
         /// The particle.

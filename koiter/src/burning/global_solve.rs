@@ -7,8 +7,8 @@
 //! x̃ positions without springs [m], h step [s], α compliance [m/N], C and J of [`super::Network`]. The matrix is positive
 //! definite whatever the rank of J: the paper's reason for taking colours one after the other, that all constraints together
 //! are singular, is a property of A = J W Jᵀ and not of the constraints. Stiffness does not depend on the number of
-//! iterations, and a shell bends as far as its layers ask: successive projections of a strip with a shrunk layer stop at a
-//! third of that.
+//! iterations, and a shell bends as far as its layers ask: successive projections of a strip with a shrunk layer stop
+//! before that.
 //!
 //! A step is halved until the sum falls.
 

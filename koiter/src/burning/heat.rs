@@ -62,7 +62,12 @@ pub(super) fn cool(ambient: f64, rate: f64, dt: f64, temperatures: &mut [f64]) {
 
 /// Backward Euler of T' = k (goal − T) over a time of `share` / k.
 fn relax(temperature: &mut f64, goal: f64, share: f64) {
-    *temperature += (goal - *temperature) * share / (1.0 + share);
+    // The same twice, so that neither a share near 0 loses digits nor one that is infinite gives no number.
+    let part = match share < 1.0 {
+        true => share / (1.0 + share),
+        false => 1.0 / (1.0 + 1.0 / share),
+    };
+    *temperature += (goal - *temperature) * part;
 }
 
 /// Conduction along the springs of a double layer.

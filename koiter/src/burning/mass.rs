@@ -78,7 +78,7 @@ impl BurningOptions {
                 .min(self.largest_change)
                 .min(*ratio - self.smallest_mass)
                 .max(0.0);
-            *ratio -= loss;
+            *ratio = (*ratio - loss).max(self.smallest_mass);
             *temperature += self.heat_of_combustion * loss;
         }
     }

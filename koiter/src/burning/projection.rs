@@ -50,7 +50,7 @@ impl Default for ProjectionOptions {
     fn default() -> Self {
         Self {
             method: ProjectionMethod::default(),
-            // A cell of paper, 2 cm wide, weighs 0.3 mN: it stretches a spring by a billionth of its length.
+            // A cell of paper, 2 cm wide, weighs 0.3 mN: it stretches a spring by a nanometre.
             compliance: 1e-5,
             sweeps: 7,
             tolerance: 1e-7,

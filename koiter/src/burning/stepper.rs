@@ -183,6 +183,13 @@ impl BurningShell {
         surround: &mut dyn FnMut(f64, &mut Surroundings),
         surroundings: &mut Surroundings,
     ) -> Result<BurningReport, BurningError> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(BurningError::Value {
+                what: "dt",
+                value: dt,
+                expected: "larger than 0",
+            });
+        }
         let burning = &self.setup.burning;
         let fastest = burning.fastest(
             &self.state.temperatures,
@@ -201,7 +208,7 @@ impl BurningShell {
             self.advance(dt / parts as f64, surroundings, &mut report)
                 .map_err(|_| BurningError::NotPositiveDefinite { time: time + dt })?;
         }
-        match (self.state.positions.iter()).position(|x| !x.iter().all(|value| value.is_finite())) {
+        match self.state.first_not_finite() {
             None => Ok(report),
             Some(particle) => Err(BurningError::NotFinite {
                 particle,
@@ -402,9 +409,26 @@ impl BurningShell {
                 "a mass of a double layer is not between 0 and its initial mass".to_owned(),
             );
         }
+        self.put_back(state);
+        Ok(())
+    }
+
+    /// Takes up a state that this shell had.
+    pub(crate) fn put_back(&mut self, state: &BurningState) {
         self.state.clone_from(state);
         self.shrink_and_cut();
-        Ok(())
+    }
+}
+
+impl BurningState {
+    /// The first particle with a value that is not finite.
+    fn first_not_finite(&self) -> Option<usize> {
+        let is_finite = |v: &Vec3| v.iter().all(|value| value.is_finite());
+        (0..self.positions.len()).find(|&p| {
+            !(is_finite(&self.positions[p])
+                && is_finite(&self.velocities[p])
+                && self.temperatures[p].is_finite())
+        })
     }
 }
 
@@ -455,6 +479,56 @@ impl BurningShell {
             }),
         };
         share("smallest_mass", burning.smallest_mass)?;
+        let within = |what, value: f64, [least, most]: [f64; 2], expected| match value >= least
+            && value <= most
+        {
+            true => Ok(()),
+            false => Err(BurningError::Value {
+                what,
+                value,
+                expected,
+            }),
+        };
+        // Inverse masses, lengths and stiffnesses have to be numbers that can be squared.
+        within(
+            "smallest_mass",
+            burning.smallest_mass,
+            [1e-3, 1.0],
+            "from 0.001 to 1",
+        )?;
+        within(
+            "area_density",
+            setup.area_density,
+            [1e-9, 1e9],
+            "from 1e-9 to 1e9",
+        )?;
+        within(
+            "compliance",
+            setup.projection.compliance,
+            [1e-30, 1e30],
+            "from 1e-30 to 1e30",
+        )?;
+        within(
+            "shrinkage_exponent",
+            burning.shrinkage_exponent,
+            [0.0, 10.0],
+            "from 0 to 10",
+        )?;
+        for springs in &setup.shell.springs {
+            let lengths = &springs.initial_lengths;
+            let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
+            // Written so that what is not a number is refused.
+            if !lengths
+                .iter()
+                .all(|&length| length.is_finite() && length > 1e-6 * mean)
+            {
+                return Err(BurningError::Value {
+                    what: "thickness",
+                    value: setup.shell.thickness,
+                    expected: "such that no two particles of the layers stand at one place",
+                });
+            }
+        }
         share("largest_change", burning.largest_change)?;
         share("loss_level", burning.loss_level)?;
         setup

@@ -96,13 +96,18 @@ impl Burning {
         let before = self.states();
         for (index, state) in states.iter().enumerate() {
             if let Err(reason) = self.shells[index].restore(state) {
-                for (shell, state) in self.shells.iter_mut().zip(&before[..index]) {
-                    shell.restore(state)?;
-                }
+                self.put_back(&before);
                 return Err(reason);
             }
         }
         Ok(())
+    }
+
+    /// Takes up states of a moment ago.
+    fn put_back(&mut self, states: &[BurningState]) {
+        for (shell, state) in self.shells.iter_mut().zip(states) {
+            shell.put_back(state);
+        }
     }
 }
 
@@ -121,8 +126,7 @@ impl Simulation {
             match shell.step(time, dt, &mut surround, &mut burning.surroundings) {
                 Ok(report) => total.add(&report),
                 Err(error) => {
-                    let restored = burning.restore(&before);
-                    restored.expect("states of a moment ago fit");
+                    burning.put_back(&before);
                     return Err(StepError::NotFinite {
                         step,
                         energy: "double layer".to_owned(),

@@ -218,3 +218,60 @@ fn numbers_out_of_range_are_refused_by_name() {
     options.diffusivity = f64::NAN;
     assert!(BurningShell::new(options).is_err());
 }
+
+#[test]
+fn numbers_that_no_step_could_bear_are_refused() {
+    let sound = || setup(QuadMesh::grid([0.1, 0.1], [2, 2]).unwrap(), 1e-3);
+    let refused = |change: &dyn Fn(&mut BurningSetup)| {
+        let mut setup = sound();
+        change(&mut setup);
+        match BurningShell::check(&setup) {
+            Err(BurningError::Value { what, .. }) => what,
+            other => panic!("{other:?}"),
+        }
+    };
+    assert!(BurningShell::check(&sound()).is_ok());
+    assert_eq!(
+        refused(&|s| s.burning.smallest_mass = 1e-20),
+        "smallest_mass"
+    );
+    assert_eq!(
+        refused(&|s| s.burning.shrinkage_exponent = 3000.0),
+        "shrinkage_exponent"
+    );
+    assert_eq!(refused(&|s| s.area_density = 1e-320), "area_density");
+    assert_eq!(refused(&|s| s.projection.compliance = 1e-320), "compliance");
+    // As a cube whose centres of faces meet in its middle.
+    assert_eq!(
+        refused(&|s| s.shell.springs[1].initial_lengths[0] = 0.0),
+        "thickness"
+    );
+    let mut burning = BurningShell::new(sound()).unwrap();
+    let step = burning.step(0.0, 0.0, &mut |_, _| (), &mut Surroundings::default());
+    assert!(
+        matches!(step, Err(BurningError::Value { what: "dt", .. })),
+        "{step:?}"
+    );
+}
+
+#[test]
+fn heat_that_comes_at_any_rate_leaves_temperatures_between_those_of_shell_and_source() {
+    for rate in [1e-300, 1.0, 1e306] {
+        let mut burning = hot_sphere(4);
+        burning.burning.heat_of_combustion = 0.0;
+        let mut burning = BurningShell::new(burning).unwrap();
+        let mut around = Surroundings::default();
+        let mut surround = |_: f64, around: &mut Surroundings| {
+            around.sources = vec![HeatSource {
+                ball: Some((Vec3::zeros(), 1.0)),
+                temperature: 400.0,
+                rate,
+                intensity: Vec::new(),
+            }];
+        };
+        burning.step(0.0, 1e-3, &mut surround, &mut around).unwrap();
+        // The system of conduction is solved to a share of 1e-10 or so.
+        let is_between = |&t: &f64| (292.9..=400.1).contains(&t);
+        assert!(burning.state().temperatures.iter().all(is_between));
+    }
+}
