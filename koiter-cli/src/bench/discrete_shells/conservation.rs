@@ -153,7 +153,7 @@ pub(super) fn check(gates: &mut Gates) -> Result<(), Failure> {
                 "its trend by the largest",
                 "",
                 share,
-                Gate::Below(0.5),
+                Gate::Below(0.1),
             );
             runs.push(drifts);
         }
@@ -229,7 +229,7 @@ fn longest_step() -> Result<f64, Failure> {
     Ok(low)
 }
 
-/// A flat beam with a membrane ten times as stiff: gains of energy over the largest kinetic energy in 0.6 s, and what stops
+/// A flat beam with a membrane ten times as stiff: changes of energy, or gains where damping takes some, over the largest kinetic energy in 0.6 s, and what stops
 /// them.
 fn check_gain(gates: &mut Gates) -> Result<(), Failure> {
     let case = "gain, flat beam, k_L = 10 N";
@@ -265,7 +265,12 @@ fn check_gain(gates: &mut Gates) -> Result<(), Failure> {
         let (mut gain, mut kinetic) = (0.0f64, 0.0f64);
         for _ in 0..(0.66f64 / dt).round() as usize {
             simulation.step(dt).map_err(Failure::run)?;
-            gain = gain.max(total(&simulation) - start);
+            let change = total(&simulation) - start;
+            gain = gain.max(if more.is_empty() {
+                change.abs()
+            } else {
+                change
+            });
             kinetic = kinetic.max(super::run::energy(&simulation, "kinetic"));
         }
         gates.check(case, figure, "", gain / kinetic, gate);
