@@ -57,26 +57,6 @@ const OF_STRAINS: DampingOptions = DampingOptions {
     hinges: 1e-5,
 };
 
-fn total(simulation: &Simulation) -> f64 {
-    simulation.energies().iter().map(|(_, e)| e).sum()
-}
-
-/// Σ m v, Σ m (x − β dt² a) × v.
-fn momenta(simulation: &Simulation, shift: f64) -> [Vec3; 2] {
-    let state = simulation.state();
-    let masses = simulation.masses();
-    let vector = |values: &[f64], v: usize| Vec3::from_column_slice(&values[3 * v..3 * v + 3]);
-    let vertices = 0..simulation.model().shells[0].surface.positions.len();
-    let mut sums = [Vec3::zeros(); 2];
-    for v in vertices {
-        let velocity = vector(&state.velocities, v) * masses[3 * v];
-        let arm = vector(&state.q, v) - vector(&state.accelerations, v) * shift;
-        sums[0] += velocity;
-        sums[1] += arm.cross(&velocity);
-    }
-    sums
-}
-
 #[test]
 fn damping_of_strains_takes_energy_and_no_momentum() {
     for (integrator, beta, dt) in [
@@ -89,14 +69,14 @@ fn damping_of_strains_takes_energy_and_no_momentum() {
         model.solver.newmark.beta = beta;
         let mut simulation = Simulation::new(model).unwrap();
         let shift = beta * dt * dt;
-        let before = total(&simulation);
+        let before = simulation.total_energy();
         simulation.step(dt).unwrap();
-        let start = momenta(&simulation, shift);
-        let mut last = total(&simulation);
+        let start = simulation.momenta(shift);
+        let mut last = simulation.total_energy();
         let mut taken = 0.0;
         for _ in 0..100 {
             let report = simulation.step(dt).unwrap();
-            let now = momenta(&simulation, shift);
+            let now = simulation.momenta(shift);
             let drift = [0, 1].map(|k| (now[k] - start[k]).norm() / start[k].norm());
             // Newton's steps end below 1e-10 m/s. Backward differences keep angular momentum up to their order only.
             assert!(drift[0] < 1e-10, "{integrator:?}: {drift:?}");
@@ -105,9 +85,9 @@ fn damping_of_strains_takes_energy_and_no_momentum() {
             let damped = report.energies.iter().find(|(name, _)| *name == "damping");
             taken += damped.unwrap().1;
             if integrator == IntegratorKind::ImplicitEuler {
-                assert!(total(&simulation) <= last, "{integrator:?}");
+                assert!(simulation.total_energy() <= last, "{integrator:?}");
             }
-            last = total(&simulation);
+            last = simulation.total_energy();
         }
         assert!(
             last < before && taken > 0.0,
@@ -121,13 +101,13 @@ fn newmark_with_damping_never_has_more_energy_than_it_began_with() {
     for bending in [BendingModel::DsTheta, BendingModel::Bac, BendingModel::Dkt] {
         let model = flying(IntegratorKind::Newmark, bending, OF_STRAINS);
         let mut simulation = Simulation::new(model).unwrap();
-        let mut last = total(&simulation);
+        let mut last = simulation.total_energy();
         let mut rises = 0.0f64;
         let start = last;
         for _ in 0..100 {
             simulation.step(2e-4).unwrap();
-            rises = rises.max(total(&simulation) - last);
-            last = total(&simulation);
+            rises = rises.max(simulation.total_energy() - last);
+            last = simulation.total_energy();
         }
         // Of the undamped method, whose energy is kept up to the square of the step.
         assert!(rises < 1e-6 * start, "{bending:?}: {rises} of {start}");
@@ -141,7 +121,7 @@ fn the_rest_of_the_balance_is_what_damping_took() {
     let gap = |dt: f64| {
         let model = flying(IntegratorKind::Newmark, BendingModel::DsTheta, OF_STRAINS);
         let mut simulation = Simulation::new(model).unwrap();
-        let start = total(&simulation);
+        let start = simulation.total_energy();
         let mut taken = 0.0;
         for _ in 0..(0.02 / dt).round() as usize {
             let report = simulation.step(dt).unwrap();
@@ -152,7 +132,7 @@ fn the_rest_of_the_balance_is_what_damping_took() {
                 .unwrap()
                 .1;
         }
-        let lost = start - total(&simulation);
+        let lost = start - simulation.total_energy();
         assert!(lost > 0.0);
         (lost - taken).abs() / lost
     };
@@ -175,11 +155,11 @@ fn drag_takes_momentum_at_its_rate() {
         let mut model = flying(integrator, BendingModel::DsTheta, drag);
         model.solver.newmark.beta = beta;
         let mut simulation = Simulation::new(model).unwrap();
-        let start = momenta(&simulation, 0.0);
+        let start = simulation.momenta(0.0);
         let steps = (0.05f64 / dt).round() as usize;
         (0..steps).for_each(|_| drop(simulation.step(dt).unwrap()));
         let share = (-rate * 0.05f64).exp();
-        for (now, start) in momenta(&simulation, 0.0).iter().zip(start) {
+        for (now, start) in simulation.momenta(0.0).iter().zip(start) {
             // Half of rate times the step, of first order in explicit steps and of the rest squared.
             let error = (now - start * share).norm() / (start.norm() * share);
             assert!(error < 0.01, "{integrator:?} {beta}: {error}");
@@ -189,16 +169,23 @@ fn drag_takes_momentum_at_its_rate() {
 
 #[test]
 fn a_rigid_motion_is_not_damped() {
-    for bending in [BendingModel::DsTheta, BendingModel::Dcs, BendingModel::Dkt] {
+    for bending in [
+        BendingModel::DsTheta,
+        BendingModel::Dcs,
+        BendingModel::Dkt,
+        BendingModel::QbCr,
+        BendingModel::QbPl,
+        BendingModel::QbInt,
+    ] {
         let mut model = flying(IntegratorKind::Newmark, bending, OF_STRAINS);
         let shell = &mut model.shells[0];
         shell.surface.positions = shell.rest_positions.clone();
         shell.velocities.fill(Vec3::new(0.3, -0.2, 1.0));
         let mut simulation = Simulation::new(model).unwrap();
-        let start = total(&simulation);
+        let start = simulation.total_energy();
         (0..50).for_each(|_| drop(simulation.step(1e-3).unwrap()));
         assert!(
-            (total(&simulation) / start - 1.0).abs() < 1e-12,
+            (simulation.total_energy() / start - 1.0).abs() < 1e-12,
             "{bending:?}"
         );
     }
@@ -213,9 +200,9 @@ fn a_rigid_motion_is_not_damped() {
             .map(|x| Vec3::z().cross(x) * speed);
         shell.velocities = turning.collect();
         let mut simulation = Simulation::new(model).unwrap();
-        let start = total(&simulation);
+        let start = simulation.total_energy();
         (0..200).for_each(|_| drop(simulation.step(2e-4).unwrap()));
-        1.0 - total(&simulation) / start
+        1.0 - simulation.total_energy() / start
     };
     let [slow, fast] = [2.0, 4.0].map(lost);
     assert!(
@@ -239,14 +226,21 @@ fn kept(bending: BendingModel, damping: DampingOptions) -> [f64; 2] {
     }
     let mut simulation = Simulation::new(model).unwrap();
     simulation.restore(&snapshot).unwrap();
-    let start = total(&simulation);
+    let start = simulation.total_energy();
     (0..200).for_each(|_| drop(simulation.step(TAU / omega / 200.0).unwrap()));
-    [total(&simulation) / start, omega]
+    [simulation.total_energy() / start, omega]
 }
 
 #[test]
 fn vibrations_decay_as_rayleigh_says() {
-    for bending in [BendingModel::DsTheta, BendingModel::Bac, BendingModel::Dkt] {
+    for bending in [
+        BendingModel::DsTheta,
+        BendingModel::Bac,
+        BendingModel::Dkt,
+        BendingModel::QbCr,
+        BendingModel::QbPl,
+        BendingModel::QbInt,
+    ] {
         let omega = kept(bending, DampingOptions::default())[1];
         let (mass, stiffness) = (0.02 * omega, 0.01 / omega);
         let only = |mass, stiffness| DampingOptions {
@@ -293,6 +287,69 @@ fn hinge_damping_of_twice_stiffness_times_a_time_is_damping_by_that_time() {
     );
 }
 
+/// A strip whose bending and stretching are texts, and what the built-in energies make of it.
+#[test]
+fn texts_are_damped_as_the_built_in_energies_are() {
+    let damping = DampingOptions {
+        stiffness: 2e-3,
+        ..Default::default()
+    };
+    let text = |name: &str, on, text: &str| TextEnergy {
+        name: name.into(),
+        shell: 0,
+        on,
+        value: TextValue {
+            is_dissipation: false,
+            is_density: true,
+        },
+        text: text.into(),
+        parameters: Vec::new(),
+        vertices: None,
+    };
+    let mut built_in = flying(IntegratorKind::Newmark, BendingModel::DsTheta, damping);
+    let composition = &mut built_in.shells[0].composition;
+    composition.membrane = MembraneModel::DiscreteShells;
+    composition.springs = DiscreteStiffness {
+        edges: Some(30.0),
+        areas: Some(500.0),
+    };
+    composition.hinges.stiffness = Some(4e-3);
+    let mut written = flying(IntegratorKind::Newmark, BendingModel::None, damping);
+    // A membrane next to nothing, which every shell has.
+    written.shells[0].composition.membrane = MembraneModel::DiscreteShells;
+    written.shells[0].composition.springs = DiscreteStiffness {
+        edges: Some(1e-9),
+        areas: Some(1e-9),
+    };
+    written.energies = vec![
+        text(
+            "edges",
+            ElementKind::Edge,
+            "30 * (1 - length / rest_length)^2",
+        ),
+        text("areas", ElementKind::Face, "500 * (1 - area / rest_area)^2"),
+        text("hinges", ElementKind::Hinge, "4e-3 * angle^2 / rest_height"),
+    ];
+    let [built_in, written] = [built_in, written].map(|model| {
+        let mut simulation = Simulation::new(model).unwrap();
+        let start = simulation.total_energy();
+        let first = simulation.step(2e-4).unwrap();
+        assert!(first.converged);
+        let momenta = simulation.momenta(0.25 * 2e-4 * 2e-4);
+        (0..100).for_each(|_| drop(simulation.step(2e-4).unwrap()));
+        let now = simulation.momenta(0.25 * 2e-4 * 2e-4);
+        for k in 0..2 {
+            assert!((now[k] - momenta[k]).norm() < 1e-9 * momenta[k].norm());
+        }
+        start - simulation.total_energy()
+    });
+    // Measures are lengths and not their squares: the same to first order in the rates.
+    assert!(
+        built_in > 0.0 && (written / built_in - 1.0).abs() < 1e-3,
+        "{written} {built_in}"
+    );
+}
+
 #[test]
 fn damping_shortens_the_stable_explicit_step() {
     let stable = |stiffness: f64| {
@@ -310,9 +367,9 @@ fn damping_shortens_the_stable_explicit_step() {
                 Err(StepError::Unstable { stable_dt, .. }) => dt = 0.999 * stable_dt,
                 Err(error) => panic!("{error}"),
                 Ok(_) => {
-                    let start = total(&simulation);
+                    let start = simulation.total_energy();
                     (0..300).for_each(|_| drop(simulation.step(0.97 * dt).unwrap()));
-                    assert!(total(&simulation) < 1.5 * start);
+                    assert!(simulation.total_energy() < 1.5 * start);
                     return dt;
                 }
             }

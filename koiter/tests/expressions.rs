@@ -1,6 +1,7 @@
 //! Energies written as texts, in whole simulations.
 
 use koiter::Vec3;
+use koiter::integrate::{LinearError, StepError};
 use koiter::mesh::generate::{GridDiagonals, grid, icosphere};
 use koiter::mesh::{Surface, VertexId};
 use koiter::scene::model::*;
@@ -344,4 +345,99 @@ fn what_is_not_defined_at_the_start_is_refused_with_its_element() {
     assert!(matches!(refused(open), BuildError::OpenShell { .. }));
     let wrong = energy("wrong", ElementKind::Shell, ENERGY, "volum");
     assert!(matches!(refused(wrong), BuildError::Expression { .. }));
+}
+
+/// A drag that grows with the cube of the speed is no danger at rest, but to what flies; and parameters change before the
+/// hundred steps are over for which an estimate is kept.
+#[test]
+fn explicit_steps_are_refused_when_speed_or_parameters_make_them_unstable() {
+    let explicit = |energy: TextEnergy, speed: f64| {
+        let mut model = model(sheet(), vec![energy], IntegratorKind::Newmark);
+        model.solver.newmark.beta = 0.0;
+        model.shells[0].velocities.fill(Vec3::x() * speed);
+        let mut simulation = Simulation::new(model).unwrap();
+        for step in 0..200 {
+            if let Err(error) = simulation.step(1e-4) {
+                assert!(matches!(error, StepError::Unstable { .. }), "{error}");
+                return step;
+            }
+            let velocities = simulation.shell_velocities(0);
+            let fastest = velocities.iter().map(Vec3::norm).fold(0.0, f64::max);
+            assert!(fastest < 1.1 * speed + 0.1, "step {step}");
+        }
+        200
+    };
+    // c = 12 k v²: for 0.5 kg/m² and steps of 0.1 ms the limit 2/dt of c by mass is at v = 0.37 m/s.
+    let drag = |speed: f64| {
+        let text = "6e3 * (vx^2 + vy^2 + vz^2)^2";
+        let drag = energy("drag", ElementKind::Vertex, DISSIPATION_DENSITY, text);
+        explicit(drag, speed)
+    };
+    assert_eq!([drag(0.5), drag(0.25)], [0, 200]);
+    // Springs that grow stiff within a few steps of the first estimate.
+    let mut growing = energy(
+        "springs",
+        ElementKind::Edge,
+        DENSITY,
+        "k * (length - rest_length)^2",
+    );
+    growing.parameters = vec![(
+        "k".into(),
+        Schedule {
+            times: vec![0.0, 2e-3, 4e-3],
+            values: vec![1.0, 1.0, 1e10],
+        },
+    )];
+    let stopped = explicit(growing, 0.0);
+    assert!((20..40).contains(&stopped), "{stopped}");
+}
+
+#[test]
+fn powers_know_negative_bases_and_rest() {
+    // A name is as good as a number.
+    let named = energy(
+        "named",
+        ElementKind::Vertex,
+        ENERGY,
+        "n = 2; 5 * (z - 1)^n + 0 * n",
+    );
+    let plain = energy("plain", ElementKind::Vertex, ENERGY, "5 * (z - 1)^2");
+    let cubic = energy(
+        "cubic",
+        ElementKind::Vertex,
+        DISSIPATION_DENSITY,
+        "0.1 * (vx^2 + vy^2 + vz^2)^1.5",
+    );
+    let model = model(
+        sheet(),
+        vec![named, plain, cubic],
+        IntegratorKind::ImplicitEuler,
+    );
+    let mut simulation = Simulation::new(model).unwrap();
+    assert!(simulation.step(0.01).unwrap().converged);
+    let [a, b] = [
+        self::named(&simulation, "named"),
+        self::named(&simulation, "plain"),
+    ];
+    assert_eq!(a, b);
+}
+
+#[test]
+fn vibrations_of_energies_of_whole_shells_are_refused_unless_they_are_linear() {
+    let modes = |text: &str| {
+        let ball = shell(icosphere(0.1, 1).unwrap());
+        let whole = energy("whole", ElementKind::Shell, ENERGY, text);
+        let model = model(ball, vec![whole], IntegratorKind::ImplicitEuler);
+        Simulation::new(model).unwrap().vibration_modes(7)
+    };
+    for dense in [
+        "1e3 * (volume / rest_volume)^2",
+        "-1e-3 * (area / rest_area)^2",
+    ] {
+        assert!(
+            matches!(modes(dense), Err(LinearError::Dense { .. })),
+            "{dense}"
+        );
+    }
+    assert!(modes("-1e-6 * volume").is_ok());
 }

@@ -165,6 +165,10 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
         self.local.set_time(time);
     }
 
+    fn settings(&self) -> &[f64] {
+        self.local.settings()
+    }
+
     fn value(&self, q: &[f64]) -> f64 {
         if self.factor == 0.0 {
             return 0.0;

@@ -47,6 +47,8 @@ use crate::geometry::{Dual, Real};
 pub trait ElementFunction<const N: usize, const K: usize>: Send + Sync {
     /// Unknowns of each node; they sum to `N`. Points have three, as by default.
     const NODE_SIZES: [usize; K] = [3; K];
+    /// See [`LocalEnergy::MEASURES`].
+    const MEASURES: usize = 0;
     /// Name in reports.
     fn name(&self) -> &str;
     /// Number of elements.
@@ -57,6 +59,16 @@ pub trait ElementFunction<const N: usize, const K: usize>: Send + Sync {
     fn energy<R: Real>(&self, element: usize, q: &[R; N]) -> R;
     /// See [`super::Energy::set_time`].
     fn set_time(&mut self, _time: f64) {}
+    /// See [`super::Energy::settings`].
+    fn settings(&self) -> &[f64] {
+        &[]
+    }
+    /// Writes the [`Self::MEASURES`] of an element.
+    fn measure(&self, _element: usize, _q: &[f64; N], _measures: &mut [f64]) {}
+    /// Writes their rest values.
+    fn rest(&self, _element: usize, _measures: &mut [f64]) {}
+    /// Replaces their rest values.
+    fn set_rest(&mut self, _element: usize, _measures: &[f64]) {}
     /// The element in the user's terms.
     fn describe(&self, element: usize) -> String {
         format!("element {element}")
@@ -71,6 +83,7 @@ impl<const N: usize, const K: usize, F: ElementFunction<N, K>> LocalEnergy<N, K>
     for Differentiated<F>
 {
     const NODE_SIZES: [usize; K] = F::NODE_SIZES;
+    const MEASURES: usize = F::MEASURES;
 
     fn name(&self) -> &str {
         self.0.name()
@@ -88,6 +101,10 @@ impl<const N: usize, const K: usize, F: ElementFunction<N, K>> LocalEnergy<N, K>
         self.0.set_time(time);
     }
 
+    fn settings(&self) -> &[f64] {
+        self.0.settings()
+    }
+
     fn value(&self, stencil: usize, q: &SVector<f64, N>) -> f64 {
         self.0.energy(stencil, &std::array::from_fn(|i| q[i]))
     }
@@ -100,6 +117,18 @@ impl<const N: usize, const K: usize, F: ElementFunction<N, K>> LocalEnergy<N, K>
 
     fn hessian(&self, stencil: usize, q: &SVector<f64, N>) -> LocalHessian<N> {
         self.0.energy(stencil, &variables(q)).into()
+    }
+
+    fn measure(&self, stencil: usize, q: &SVector<f64, N>, measures: &mut [f64]) {
+        (self.0).measure(stencil, &std::array::from_fn(|i| q[i]), measures);
+    }
+
+    fn rest(&self, stencil: usize, measures: &mut [f64]) {
+        self.0.rest(stencil, measures);
+    }
+
+    fn set_rest(&mut self, stencil: usize, measures: &[f64]) {
+        self.0.set_rest(stencil, measures);
     }
 
     fn describe(&self, stencil: usize) -> String {

@@ -87,6 +87,10 @@ pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
     fn nodes(&self, stencil: usize) -> [Option<Dof>; K];
     /// See [`Energy::set_time`].
     fn set_time(&mut self, _time: f64) {}
+    /// See [`Energy::settings`].
+    fn settings(&self) -> &[f64] {
+        &[]
+    }
     /// φ_s [J].
     fn value(&self, stencil: usize, q: &SVector<f64, N>) -> f64;
     /// φ_s and its gradient.
@@ -171,7 +175,7 @@ pub trait RestMeasures {
 /// The matrix `weight · vector vectorᵀ`.
 #[derive(Clone, Debug)]
 pub struct LowRank {
-    /// Positive.
+    /// Not zero; negative where the energy is concave, which a search for a minimum leaves out.
     pub weight: f64,
     /// One entry an unknown.
     pub vector: Vec<f64>,
@@ -183,6 +187,10 @@ pub trait Energy: Send + Sync {
     fn name(&self) -> &str;
     /// Takes the time [s] at the end of the coming step: energies that depend on it change here.
     fn set_time(&mut self, _time: f64) {}
+    /// What it is told from outside, as it is at this time: where that changes, so may its stiffness.
+    fn settings(&self) -> &[f64] {
+        &[]
+    }
     /// Called before a minimisation starts at `q`: contact finds its candidates here.
     fn prepare(&mut self, _q: &[f64]) {}
     /// Called before derivatives are asked for at `q`: contact collects its active pairs here.
@@ -204,7 +212,7 @@ pub trait Energy: Send + Sync {
         gradient: &mut [f64],
         hessian: &mut HessianBuilder<'_>,
     );
-    /// What belongs to ∇²Φ but couples too much with too much to be stored: positive matrices of rank one.
+    /// What belongs to ∇²Φ but couples too much with too much to be stored: matrices of rank one.
     /// [`Energy::add_derivatives`] leaves it out.
     fn low_rank(&self, _q: &[f64]) -> Vec<LowRank> {
         Vec::new()

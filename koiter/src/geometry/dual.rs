@@ -107,6 +107,9 @@ impl<const N: usize> Real for Dual<N> {
     fn value(&self) -> f64 {
         self.value
     }
+    fn is_constant(&self) -> bool {
+        self.gradient == [0.0; N]
+    }
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.chain(root, 0.5 / root)

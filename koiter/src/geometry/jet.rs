@@ -20,6 +20,8 @@ pub trait Real:
 {
     /// The number without its derivatives.
     fn value(&self) -> f64;
+    /// Whether it has none but zero.
+    fn is_constant(&self) -> bool;
     /// Square root.
     fn sqrt(self) -> Self;
     /// Sine.
@@ -87,6 +89,9 @@ impl Real for f64 {
     fn value(&self) -> f64 {
         *self
     }
+    fn is_constant(&self) -> bool {
+        true
+    }
     fn sqrt(self) -> Self {
         self.sqrt()
     }
@@ -142,11 +147,17 @@ impl<const N: usize> Jet<N> {
     /// `f(self)` for a function with value `f0` and derivatives `f1`, `f2` here.
     fn chain(&self, f0: f64, f1: f64, f2: f64) -> Self {
         let mut out = Self::from(f0);
+        // Of a power between 1 and 2 at 0, where its base has a minimum, as that of |v|³ = (v·v)^1.5 has at rest: what grows
+        // without bound is multiplied by what vanishes faster.
+        let bend = |squared: f64| match squared == 0.0 {
+            true => 0.0,
+            false => f2 * squared,
+        };
         for i in 0..N {
             out.gradient[i] = f1 * self.gradient[i];
             for j in 0..=i {
                 out.hessian[i][j] =
-                    f1 * self.hessian[i][j] + f2 * self.gradient[i] * self.gradient[j];
+                    f1 * self.hessian[i][j] + bend(self.gradient[i] * self.gradient[j]);
             }
         }
         out
@@ -260,6 +271,10 @@ impl<const N: usize> Mul<f64> for Jet<N> {
 impl<const N: usize> Real for Jet<N> {
     fn value(&self) -> f64 {
         self.value
+    }
+    fn is_constant(&self) -> bool {
+        let rows = self.hessian.iter().flatten();
+        self.gradient.iter().chain(rows).all(|entry| *entry == 0.0)
     }
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();

@@ -169,8 +169,11 @@ impl Damping {
         self.drag_energy = None;
     }
 
-    /// Parameters of dissipation functions are those of this time [s].
+    /// Parameters are those of this time [s].
     pub(crate) fn set_time(&mut self, time: f64) {
+        for damper in &mut self.dampers {
+            damper.energy.set_time(time);
+        }
         for rate in &mut self.rates {
             rate.set_time(time);
         }

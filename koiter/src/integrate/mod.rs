@@ -31,7 +31,7 @@ pub use quasi_static::QuasiStatic;
 pub use report::{StepError, StepReport};
 pub use rest_directors::{relax_directors, relax_edge_points};
 pub use shell_part::ShellPart;
-pub use state::{Memory, State};
+pub use state::{Memory, StableStep, State};
 pub use system::{Prescribed, System};
 
 /// Advances a state.

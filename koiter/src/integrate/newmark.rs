@@ -43,12 +43,6 @@ pub struct Newmark {
     pub velocity_tolerance: f64,
 }
 
-/// Explicit steps between two estimates of the longest stable one: an estimate costs as much as some twenty steps.
-const ESTIMATE_EVERY: u64 = 100;
-
-/// The estimate is from below for ω, so from above for the step.
-const SAFETY: f64 = 0.95;
-
 impl Newmark {
     /// x̃.
     fn prediction(&self, state: &State, dt: f64) -> Vec<f64> {
@@ -141,8 +135,7 @@ impl Newmark {
             (&system.masses, &prescribed.is_fixed),
             |i, q| (q[i] - prediction[i]) / (reach * reach),
             Memory::Accelerated {
-                stable_dt: f64::INFINITY,
-                age: 0,
+                stable: None,
                 largest_kinetic: 0.0,
             },
         );
@@ -164,20 +157,21 @@ impl Newmark {
     ) -> Result<StepReport, StepError> {
         let step = state.step + 1;
         let clock = Instant::now();
-        let (stable_dt, age) = match state.memory {
-            Memory::Accelerated { stable_dt, age, .. } if age < ESTIMATE_EVERY => (stable_dt, age),
-            _ => (
-                SAFETY * system.stable_step(&state.q, &prescribed.is_fixed, dt),
-                0,
-            ),
+        let mut stable = match &state.memory {
+            Memory::Accelerated {
+                stable: Some(stable),
+                ..
+            } if system.is_still_stable(stable, state, dt) => stable.clone(),
+            _ => system.stable_step(state, &prescribed.is_fixed, dt),
         };
-        if dt > stable_dt {
+        if dt > stable.dt {
             return Err(StepError::Unstable {
                 step,
                 dt,
-                stable_dt,
+                stable_dt: stable.dt,
             });
         }
+        stable.age += 1;
         let mut seconds = vec![("stable_step", clock.elapsed().as_secs_f64())];
         let mut q = self.prediction(state, dt);
         let solved_dofs = system.masses.len();
@@ -197,8 +191,7 @@ impl Newmark {
             (masses, &prescribed.is_fixed),
             |i, _| -gradient[i] / masses[i],
             Memory::Accelerated {
-                stable_dt,
-                age: age + 1,
+                stable: Some(stable),
                 largest_kinetic: 0.0,
             },
         );

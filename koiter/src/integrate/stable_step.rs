@@ -7,28 +7,75 @@
 //! K the exact Hessian of all energies without contact, C that of damping by rates, which an explicit step knows half a step
 //! late, M the masses. Without damping it is dt < 2 / ω. x is found by power iteration, from below; on meshes of shells the
 //! iteration below is within a percent or two of ω².
+//!
+//! An estimate costs as much as some twenty steps, so it is kept: for a hundred steps, unless what energies are told from outside
+//! changes, or the shells become so fast that a dissipation, which may grow with speed, comes near the limit.
 
-use super::System;
 use super::damping::RateRule;
 use super::linear::Part;
+use super::{StableStep, State, System};
 use crate::assembly::{LowRank, SymmetricMatrix};
 
 /// Each brings the estimate nearer to the largest eigenvalue.
 const ITERATIONS: usize = 60;
 
+/// Steps for which an estimate is kept at most.
+const KEPT_STEPS: u64 = 100;
+
+/// The estimate is from below for ω, so from above for the step.
+const SAFETY: f64 = 0.95;
+
+/// The share by which a setting may change: of a stiffness it is half as much of the step, which [`SAFETY`] covers.
+const SETTING_CHANGE: f64 = 0.05;
+
 impl System {
-    /// An estimate of the longest stable step at `q` [s], at least the true one and rarely more than 2 % longer, if it is
-    /// near `dt`.
-    pub(super) fn stable_step(&mut self, q: &[f64], is_fixed: &[bool], dt: f64) -> f64 {
-        // With half a step for τ the Hessian of damping is 2 C/dt.
-        self.damping.begin(&RateRule::backward(q, 0.5 * dt));
+    /// Whether an estimate still holds for a step from `state`. Forces up to the cube of the speed damp with its square: the
+    /// limit of a step that damping alone limits falls with that.
+    pub(super) fn is_still_stable(&self, stable: &StableStep, state: &State, dt: f64) -> bool {
+        let settings = self.settings();
+        let mut pairs = settings.iter().zip(&stable.settings);
+        let is_alike = pairs.all(|(now, then): (&f64, &f64)| {
+            (now - then).abs() <= SETTING_CHANGE * now.abs().max(then.abs())
+        });
+        let margin = (stable.dt / dt).sqrt();
+        let is_slow = self.damping.rates.is_empty() || speed(state) <= margin * stable.speed;
+        stable.age < KEPT_STEPS && is_alike && is_slow
+    }
+
+    /// What energies are told from outside, of all in order.
+    fn settings(&self) -> Vec<f64> {
+        let energies = self.elastic.iter().flat_map(|energy| energy.settings());
+        let rates = self.damping.rates.iter().flat_map(|rate| rate.settings());
+        energies.chain(rates).copied().collect()
+    }
+
+    /// The longest stable step from `state` as it is estimated, if it is near `dt` [s].
+    pub(super) fn stable_step(&mut self, state: &State, is_fixed: &[bool], dt: f64) -> StableStep {
+        StableStep {
+            dt: SAFETY * self.longest_step(state, is_fixed, dt),
+            age: 0,
+            speed: speed(state),
+            settings: self.settings(),
+        }
+    }
+
+    /// An estimate of the longest stable step [s], at least the true one and rarely more than 2 % longer, if it is near `dt`.
+    fn longest_step(&mut self, state: &State, is_fixed: &[bool], dt: f64) -> f64 {
+        let q = &state.q[..];
+        // With half a step for τ the Hessian of damping is 2 C/dt, at the velocities of the state.
+        let moving = state.q.iter().zip(&state.velocities);
+        let before: Vec<f64> = moving.map(|(x, v)| x - 0.5 * dt * v).collect();
+        self.damping.begin(&RateRule::backward(&before, 0.5 * dt));
         let (matrix, _) = self.second_derivatives(q, Part::Motion);
-        let dense: Vec<LowRank> = (self.elastic.iter())
+        let of_shape: Vec<LowRank> = (self.elastic.iter())
             .flat_map(|energy| energy.low_rank(q))
             .collect();
-        let multiply = |matrix: &SymmetricMatrix, x: &[f64]| {
+        let of_rates: Vec<LowRank> = (self.damping.energies())
+            .flat_map(|energy| energy.low_rank(q))
+            .collect();
+        let multiply = |matrix: &SymmetricMatrix, dense: &[&[LowRank]], x: &[f64]| {
             let mut image = matrix.multiply(x);
-            for LowRank { weight, vector } in &dense {
+            for LowRank { weight, vector } in dense.iter().copied().flatten() {
                 let share = weight * dot(vector, x);
                 for (image, entry) in image.iter_mut().zip(vector) {
                     *image += share * entry;
@@ -42,7 +89,9 @@ impl System {
                 false => 1.0 / mass.sqrt(),
             })
             .collect();
-        let Some((shape, eigenvalue)) = largest(&|x| multiply(&matrix, x), &scale) else {
+        let Some((shape, eigenvalue)) =
+            largest(&|x| multiply(&matrix, &[&of_shape, &of_rates], x), &scale)
+        else {
             return f64::INFINITY;
         };
         if self.damping.is_none() {
@@ -50,11 +99,16 @@ impl System {
         }
         let (undamped, _) = self.second_derivatives(q, Part::All);
         // The quotients lie below the eigenvalue as far as the iteration has not ended: both by the same share.
-        let all = dot(&shape, &multiply(&matrix, &shape));
-        let stiffness = eigenvalue / all * dot(&shape, &multiply(&undamped, &shape));
+        let all = dot(&shape, &multiply(&matrix, &[&of_shape, &of_rates], &shape));
+        let stiffness = eigenvalue / all * dot(&shape, &multiply(&undamped, &[&of_shape], &shape));
         let damping = 0.5 * dt * (eigenvalue - stiffness).max(0.0);
         4.0 / (damping + (damping * damping + 4.0 * stiffness.max(0.0)).sqrt())
     }
+}
+
+/// The largest rate of an unknown.
+fn speed(state: &State) -> f64 {
+    (state.velocities.iter()).fold(0.0, |most: f64, v| most.max(v.abs()))
 }
 
 /// The largest eigenvalue of `S A S`, A a multiplication, S the diagonal matrix of `scale`, and S times its vector of unit length; `None` if

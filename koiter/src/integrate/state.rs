@@ -38,13 +38,24 @@ pub enum Memory {
     },
     /// Newmark: the accelerations of the state are those of the equation of motion.
     Accelerated {
-        /// Explicit steps: the longest that was found stable [s]; infinite for implicit ones.
-        stable_dt: f64,
-        /// Explicit steps since that was found.
-        age: u64,
+        /// Explicit steps: the longest that was found stable.
+        stable: Option<StableStep>,
         /// The largest kinetic energy so far [J], where gains of energy are watched; else 0.
         largest_kinetic: f64,
     },
+}
+
+/// The longest explicit step that was found stable, and under what.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StableStep {
+    /// The step [s].
+    pub dt: f64,
+    /// Steps since it was found.
+    pub age: u64,
+    /// The largest speed at the time [m/s], on which dissipations depend.
+    pub speed: f64,
+    /// What energies were told from outside ([`crate::assembly::Energy::settings`]), of all in order.
+    pub settings: Vec<f64>,
 }
 
 impl State {

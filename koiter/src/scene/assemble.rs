@@ -204,6 +204,7 @@ pub(super) fn assemble(model: &Model) -> Result<Assembly, BuildError> {
     let written = expressions(model, &parts, &masses, &unknowns.layout, &q)?;
     energies.extend(written.potentials);
     damping.rates = written.rates;
+    damping.dampers.extend(written.dampers);
     let (clamps, clamped_edges) = Clamps::new(model, &parts, &q);
     let symmetry = symmetry_edges(model, &parts, &q)?;
     let loads = loads(model, &parts, &unknowns.layout, &q)?;

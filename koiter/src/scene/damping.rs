@@ -7,7 +7,7 @@ use super::model::{BendingModel, Shell};
 use super::position_bending::PositionBending;
 use crate::assembly::{Assembled, DofLayout, Energy};
 use crate::energy::bending::{
-    DiscreteKirchhoff, DiscreteShells, HingeSprings, Identity, Sine, Tangent,
+    DiscreteKirchhoff, DiscreteShells, HingeSprings, Identity, LaplacianMesh, Sine, Tangent,
 };
 use crate::integrate::{Damper, ShellPart};
 
@@ -23,7 +23,7 @@ pub struct DampingOptions {
 }
 
 impl BendingModel {
-    /// Whether bending compares measures of curvature with rest values, which can be damped and moved.
+    /// Whether bending compares measures of curvature with rest values, which can be moved.
     pub(crate) fn measures_curvature(self) -> bool {
         match self {
             Self::Bac
@@ -49,7 +49,7 @@ pub(super) fn dampers(shell: &Shell, part: &ShellPart, layout: &DofLayout) -> Ve
         let membranes = membrane(shell, part, layout).into_iter();
         dampers.extend(membranes.map(|energy| Damper::new(energy, time, None)));
         let bending = bending(shell, part, layout);
-        dampers.extend(bending.map(|energy| Damper::new(energy, time, part.bending)));
+        dampers.extend((bending.into_iter()).map(|energy| Damper::new(energy, time, part.bending)));
     }
     if damping.hinges > 0.0 {
         let hinges = hinges(shell, part, damping.hinges);
@@ -73,12 +73,12 @@ fn hinges(shell: &Shell, part: &ShellPart, damping: f64) -> DiscreteShells<Ident
     DiscreteShells::with_springs(&rest, first, frames, false, &unused, springs)
 }
 
-/// Bending of the shell's model, flat at rest.
-fn bending(shell: &Shell, part: &ShellPart, layout: &DofLayout) -> Option<Box<dyn Energy>> {
+/// Bending of the shell's model, or the squares of its strains, flat at rest.
+fn bending(shell: &Shell, part: &ShellPart, layout: &DofLayout) -> Vec<Box<dyn Energy>> {
     let num_faces = part.mesh.num_faces();
     let flat = vec![Vector3::zeros(); num_faces];
     let positions = PositionBending::new(shell, part, layout);
-    Some(match shell.bending {
+    vec![match shell.bending {
         BendingModel::Bac => Box::new(mid_edge_bending::<Tangent>(part, flat, layout)),
         BendingModel::Dcs => Box::new(mid_edge_bending::<Sine>(part, flat, layout)),
         BendingModel::Dso => Box::new(mid_edge_bending::<Identity>(part, flat, layout)),
@@ -95,10 +95,10 @@ fn bending(shell: &Shell, part: &ShellPart, layout: &DofLayout) -> Option<Box<dy
         BendingModel::DsTan => positions.discrete_shells::<Tangent>(),
         BendingModel::ChEs => positions.corotational_edge(),
         BendingModel::ChFs => positions.corotational_face(),
-        BendingModel::Ds2nd
-        | BendingModel::QbCr
-        | BendingModel::QbPl
-        | BendingModel::QbInt
-        | BendingModel::None => return None,
-    })
+        BendingModel::QbCr => positions.quadratic_hinge_strains(),
+        BendingModel::QbPl => positions.quadratic_vertex_strains(LaplacianMesh::Extrinsic),
+        BendingModel::QbInt => positions.quadratic_vertex_strains(LaplacianMesh::IntrinsicDelaunay),
+        BendingModel::Ds2nd => return positions.second_order_strains(),
+        BendingModel::None => return Vec::new(),
+    }]
 }

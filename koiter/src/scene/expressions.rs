@@ -10,11 +10,11 @@ use crate::assembly::{Assembled, Differentiated, Dof, DofLayout, Energy, LocalEn
 use crate::energy::edge_rest_lengths;
 use crate::energy::expression::{
     EdgeElement, Edges, ElementKind, Elements, ExpressionError, FaceElement, Faces, HingeElement,
-    Hinges, Names, Parameter, Potential, Program, RateEnergy, RatePotential, Settings,
-    VertexElement, Vertices, WholePotential,
+    Hinges, Names, Parameter, Potential, PotentialDamping, Program, RateEnergy, RatePotential,
+    Settings, VertexElement, Vertices, WholeDamping, WholePotential,
 };
 use crate::geometry::{Wing, hinge_angle};
-use crate::integrate::ShellPart;
+use crate::integrate::{Damper, ShellPart};
 use crate::mesh::{EdgeId, VertexId};
 
 /// An energy, or a force by a dissipation function, as a text.
@@ -78,6 +78,8 @@ impl TextEnergy {
 pub(super) struct Expressions {
     pub(super) potentials: Vec<Box<dyn Energy>>,
     pub(super) rates: Vec<Box<dyn RateEnergy>>,
+    /// Damping of the potentials by stiffness.
+    pub(super) dampers: Vec<Damper>,
 }
 
 /// The energies of all expressions of a model, which must be defined at `q`.
@@ -99,6 +101,7 @@ pub(super) fn expressions(
             program,
             layout,
             q,
+            damping: model.shells[energy.shell].composition.damping.stiffness,
         };
         let (shell, part) = (&model.shells[energy.shell], &parts[energy.shell]);
         let chosen = Chosen::new(energy, part);
@@ -120,6 +123,8 @@ struct Source<'a> {
     program: Program,
     layout: &'a DofLayout,
     q: &'a [f64],
+    /// Of the shell, by stiffness [s].
+    damping: f64,
 }
 
 impl Source<'_> {
@@ -148,6 +153,11 @@ impl Source<'_> {
             let local = Potential::new(name.clone(), elements, program, settings, is_density);
             let energy = Assembled::new(Differentiated(local), layout);
             self.check(&energy)?;
+            if self.damping > 0.0 {
+                let damping = PotentialDamping::new(energy.local().0.clone());
+                let damping = Box::new(Assembled::new(Differentiated(damping), layout));
+                made.dampers.push(Damper::new(damping, self.damping, None));
+            }
             made.potentials.push(Box::new(energy));
         }
         Ok(())
@@ -196,10 +206,12 @@ impl Source<'_> {
         let corners: Vec<[Vec3; 3]> = (0..faces.len()).map(|face| rest.corners(face)).collect();
         let (program, settings) = (self.program.clone(), self.energy.settings());
         let energy = WholePotential::new(name, &faces, self.layout, &corners, program, settings);
-        let mut gradient = vec![0.0; self.q.len()];
-        energy.add_gradient(self.q, &mut gradient);
-        if !energy.is_defined(self.q) || gradient.iter().any(|entry| !entry.is_finite()) {
+        if !energy.is_defined(self.q) {
             return Err(self.undefined("the whole shell".into()));
+        }
+        if self.damping > 0.0 {
+            let damping = Box::new(WholeDamping::new(energy.clone()));
+            made.dampers.push(Damper::new(damping, self.damping, None));
         }
         made.potentials.push(Box::new(energy));
         Ok(())

@@ -32,6 +32,7 @@ mod simulation;
 mod snapshot;
 mod step_control;
 mod symmetry;
+mod totals;
 mod turned;
 mod vertex_directors;
 

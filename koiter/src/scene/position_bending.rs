@@ -3,11 +3,11 @@
 use super::assemble::write_points;
 use super::elastic::rest_surface;
 use super::model::Shell;
-use crate::assembly::{Assembled, DofLayout, Energy};
+use crate::assembly::{Assembled, Differentiated, DofLayout, Energy};
 use crate::energy::bending::{
-    AngleProfile, CorotationalEdge, CorotationalFace, DiscreteShells, FaceBending, HingeSprings,
-    LaplacianMesh, MidEdgeAverage, QuadraticHinge, QuadraticVertex, SecondOrderEdges,
-    SecondOrderFaces,
+    AngleProfile, BendingStrains, CorotationalEdge, CorotationalFace, DiscreteShells, FaceBending,
+    HingeSprings, LaplacianMesh, MidEdgeAverage, QuadraticHinge, QuadraticVertex, SecondOrderEdges,
+    SecondOrderFaces, StrainSquares, VertexStrains,
 };
 use crate::integrate::ShellPart;
 use crate::mesh::Surface;
@@ -72,34 +72,67 @@ impl<'a> PositionBending<'a> {
     }
 
     /// Patches, and what is between them.
-    pub(super) fn second_order(&self) -> Vec<Box<dyn Energy>> {
+    fn patches(&self) -> (SecondOrderFaces, SecondOrderEdges) {
         let (part, rigidity) = (self.part, &self.rigidity);
         let (first, points, frames) = (part.first_vertex, part.first_extra, &part.frames);
         let edges = SecondOrderEdges::new(&self.rest, first, points, frames, rigidity);
         let (frames, rigidity) = (frames.clone(), rigidity.clone());
         let faces = SecondOrderFaces::new(&part.mesh, first, points, frames, rigidity);
+        (faces, edges)
+    }
+
+    pub(super) fn second_order(&self) -> Vec<Box<dyn Energy>> {
+        let (faces, edges) = self.patches();
         vec![
             Box::new(Assembled::new(faces, self.layout)),
             Box::new(Assembled::new(edges, self.layout)),
         ]
     }
 
-    pub(super) fn quadratic_hinge(&self) -> Box<dyn Energy> {
+    /// The strains of [`Self::second_order`].
+    pub(super) fn second_order_strains(&self) -> Vec<Box<dyn Energy>> {
+        let (faces, edges) = self.patches();
+        vec![self.strains(faces), self.strains(edges)]
+    }
+
+    fn hinge_model(&self) -> QuadraticHinge {
         let (first, frames) = (self.part.first_vertex, &self.part.frames);
-        let hinges = QuadraticHinge::new(&self.rest, first, frames, &self.rigidity);
-        Box::new(Assembled::new(hinges, self.layout))
+        QuadraticHinge::new(&self.rest, first, frames, &self.rigidity)
+    }
+
+    pub(super) fn quadratic_hinge(&self) -> Box<dyn Energy> {
+        Box::new(Assembled::new(self.hinge_model(), self.layout))
+    }
+
+    /// The strains of [`Self::quadratic_hinge`].
+    pub(super) fn quadratic_hinge_strains(&self) -> Box<dyn Energy> {
+        self.strains(self.hinge_model())
+    }
+
+    fn vertex_model(&self, laplacian: LaplacianMesh) -> QuadraticVertex {
+        let (first, frames) = (self.part.first_vertex, &self.part.frames);
+        let (layout, rigidity) = (self.layout, &self.rigidity);
+        QuadraticVertex::new(&self.rest, first, layout, frames, rigidity, laplacian)
     }
 
     pub(super) fn quadratic_vertex(&self, laplacian: LaplacianMesh) -> Box<dyn Energy> {
-        let (first, frames) = (self.part.first_vertex, &self.part.frames);
-        Box::new(QuadraticVertex::new(
-            &self.rest,
-            first,
-            self.layout,
-            frames,
-            &self.rigidity,
-            laplacian,
+        Box::new(self.vertex_model(laplacian))
+    }
+
+    /// The strains of [`Self::quadratic_vertex`].
+    pub(super) fn quadratic_vertex_strains(&self, laplacian: LaplacianMesh) -> Box<dyn Energy> {
+        Box::new(VertexStrains::new(
+            self.vertex_model(laplacian),
+            &self.part.mesh,
         ))
+    }
+
+    fn strains<const N: usize, const K: usize, L>(&self, model: L) -> Box<dyn Energy>
+    where
+        L: BendingStrains<N, K> + 'static,
+    {
+        let squares = Differentiated(StrainSquares::new(model));
+        Box::new(Assembled::new(squares, self.layout))
     }
 
     pub(super) fn mid_edge_average(&self) -> Box<dyn Energy> {

@@ -182,10 +182,11 @@ impl Simulation {
                 sound(*dt) && dt.is_finite() && fits(q) && fits(velocities)
             }
             Memory::Accelerated {
-                stable_dt,
+                stable,
                 largest_kinetic,
-                ..
-            } => sound(*stable_dt) && largest_kinetic.is_finite(),
+            } => {
+                stable.as_ref().is_none_or(|stable| sound(stable.dt)) && largest_kinetic.is_finite()
+            }
         };
         match is_whole {
             true => Ok(()),

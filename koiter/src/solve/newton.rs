@@ -13,9 +13,7 @@ use super::low_rank;
 use super::pace::Pace;
 use super::saddle::leave_saddle;
 use super::workspace::LinearWorkspace;
-use crate::assembly::{
-    ConfigurationSpace, DofLayout, Energy, HessianBuilder, LowRank, PsdProjection,
-};
+use crate::assembly::{ConfigurationSpace, DofLayout, Energy, HessianBuilder, PsdProjection};
 
 /// What to minimise and what is held.
 pub struct Problem<'a> {
@@ -278,8 +276,8 @@ fn newton_step(
     let (gradient, mut rhs) = factorized_system(problem, workspace, q, &direction, pace, report)?;
     let start = Instant::now();
     let factor = workspace.factor.as_mut();
-    let energies = problem.energies.iter();
-    let dense: Vec<LowRank> = energies.flat_map(|energy| energy.low_rank(q)).collect();
+    let dense = (problem.energies.iter()).flat_map(|energy| energy.low_rank(q));
+    let dense = dense.filter(|term| term.weight > 0.0).collect();
     low_rank::solve(factor, dense, problem.is_fixed, &direction, &mut rhs);
     direction[..solved].copy_from_slice(&rhs);
     report.spend("linear_solve", start);

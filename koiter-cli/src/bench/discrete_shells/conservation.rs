@@ -6,7 +6,7 @@ use koiter::integrate::StepError;
 use koiter::scene::{Scene, Simulation};
 
 use super::gates::{Gate, Gates};
-use super::run::{Trace, keep, shipped, total, written};
+use super::run::{Trace, keep, shipped, written};
 use crate::failure::Failure;
 
 /// Of what is conserved exactly: round-off of some ten thousand steps.
@@ -61,7 +61,8 @@ impl Drifts {
         let mut largest = [0.0f64; 3];
         for _ in 0..(SECONDS / dt).round() as usize {
             trace.step(dt)?;
-            let now = momenta(&trace.simulation, beta * dt * dt);
+            let [linear, modified] = trace.simulation.momenta(beta * dt * dt);
+            let now = [linear, trace.simulation.momenta(0.0)[1], modified];
             // Accelerations are those of the equation of motion from the first step on.
             let first = *first.get_or_insert(now);
             for k in 0..3 {
@@ -78,21 +79,6 @@ impl Drifts {
             cut: trace.cut,
         })
     }
-}
-
-/// Σ m v, Σ m x × v and Σ m (x − shift a) × v.
-fn momenta(simulation: &Simulation, shift: f64) -> [Vec3; 3] {
-    let (state, masses) = (simulation.state(), simulation.masses());
-    let vector = |values: &[f64], v: usize| Vec3::from_column_slice(&values[3 * v..3 * v + 3]);
-    let mut sums = [Vec3::zeros(); 3];
-    for v in 0..masses.len() / 3 {
-        let (x, a) = (vector(&state.q, v), vector(&state.accelerations, v));
-        let momentum = vector(&state.velocities, v) * masses[3 * v];
-        sums[0] += momentum;
-        sums[1] += x.cross(&momentum);
-        sums[2] += (x - a * shift).cross(&momentum);
-    }
-    sums
 }
 
 /// By how much the straight line through equidistant values rises from the first to the last.
@@ -261,11 +247,11 @@ fn check_gain(gates: &mut Gates) -> Result<(), Failure> {
         let mut scene = shipped("beams", &overrides)?;
         keep(&mut scene.model, "flat_100")?;
         let mut simulation = Simulation::new(scene.model).map_err(Failure::input)?;
-        let start = total(&simulation);
+        let start = simulation.total_energy();
         let (mut gain, mut kinetic) = (0.0f64, 0.0f64);
         for _ in 0..(0.66f64 / dt).round() as usize {
             simulation.step(dt).map_err(Failure::run)?;
-            let change = total(&simulation) - start;
+            let change = simulation.total_energy() - start;
             gain = gain.max(if more.is_empty() {
                 change.abs()
             } else {

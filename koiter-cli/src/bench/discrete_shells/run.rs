@@ -69,7 +69,7 @@ pub(super) struct Trace {
 impl Trace {
     pub(super) fn new(model: Model) -> Result<Self, Failure> {
         let simulation = Simulation::new(model).map_err(Failure::input)?;
-        let start = total(&simulation);
+        let start = simulation.total_energy();
         Ok(Self {
             simulation,
             start,
@@ -88,7 +88,7 @@ impl Trace {
         }
         self.cut += usize::from(report.parts > 1);
         self.kinetic = self.kinetic.max(energy(&self.simulation, "kinetic"));
-        self.gains.push(total(&self.simulation) - self.start);
+        self.gains.push(self.simulation.total_energy() - self.start);
         Ok(report)
     }
 
@@ -121,11 +121,6 @@ impl Trace {
             positions: self.simulation.shell_positions(0),
         }
     }
-}
-
-/// All energy [J].
-pub(super) fn total(simulation: &Simulation) -> f64 {
-    simulation.energies().iter().map(|(_, value)| value).sum()
 }
 
 /// An energy by name [J]; 0 if there is none.

@@ -1,6 +1,7 @@
 //! Bending models.
 
 mod bending_stencil;
+mod bending_strains;
 mod corotational_edge;
 mod corotational_face;
 mod director_clamp;
@@ -25,8 +26,10 @@ mod quadratic_vertex;
 mod second_order_edges;
 mod second_order_faces;
 mod symmetry_edge;
+mod vertex_strains;
 
 pub use bending_stencil::{BendingStencil, DirectorShape, bending_stencils, curvatures, directors};
+pub use bending_strains::{BendingStrains, StrainSquares};
 pub use corotational_edge::CorotationalEdge;
 pub use corotational_face::CorotationalFace;
 pub use director_clamp::{ClampedEdge, DirectorClamp};
@@ -46,3 +49,4 @@ pub use quadratic_vertex::{LaplacianMesh, QuadraticVertex};
 pub use second_order_edges::SecondOrderEdges;
 pub use second_order_faces::SecondOrderFaces;
 pub use symmetry_edge::{SymmetryEdge, SymmetryEdges};
+pub use vertex_strains::VertexStrains;

@@ -96,10 +96,25 @@ impl QuadraticVertex {
         }
     }
 
+    /// The first unknown of a vertex.
+    pub(super) fn dof(&self, vertex: u32) -> usize {
+        self.first_vertex + 3 * vertex as usize
+    }
+
     /// The three entries of a vertex in a vector over all unknowns.
-    fn entries(&self, q: &[f64], vertex: u32) -> Vec3 {
-        let start = self.first_vertex + 3 * vertex as usize;
+    pub(super) fn entries(&self, q: &[f64], vertex: u32) -> Vec3 {
+        let start = self.dof(vertex);
         Vec3::from_column_slice(&q[start..start + 3])
+    }
+
+    /// A row of L + N without its diagonal, which is minus the sum of the others: columns and values.
+    pub(super) fn row(&self, vertex: usize) -> impl Iterator<Item = (u32, f64)> + '_ {
+        self.rows[vertex].iter().copied()
+    }
+
+    /// C_i / M_i of a vertex [N/m].
+    pub(super) fn weight(&self, vertex: usize) -> f64 {
+        self.weights[vertex]
     }
 
     /// `((L + N) x)_i` by differences of positions: round-off does not grow with the distance from the origin.
@@ -111,7 +126,7 @@ impl QuadraticVertex {
         })
     }
 
-    fn node(&self, vertex: u32) -> NodeId {
+    pub(super) fn node(&self, vertex: u32) -> NodeId {
         NodeId(self.first_node + vertex)
     }
 }
@@ -187,7 +202,7 @@ impl Energy for QuadraticVertex {
         let bends = parallel_map(self.rows.len(), |v| self.laplacian(v, q) * self.weights[v]);
         for (vertex, (row, bend)) in self.rows.iter().zip(&bends).enumerate() {
             let mut add = |vertex: usize, force: Vec3| {
-                let start = self.first_vertex + 3 * vertex;
+                let start = self.dof(vertex as u32);
                 for (g, f) in gradient[start..start + 3].iter_mut().zip(&force) {
                     *g += f;
                 }
@@ -250,7 +265,7 @@ impl Energy for QuadraticVertex {
         };
         Some(WorstElement {
             description: format!("vertex {worst}"),
-            unknown: Some(Dof((self.first_vertex + 3 * worst) as u32)),
+            unknown: Some(Dof(self.dof(worst as u32) as u32)),
             gradient_norm: norms[worst],
         })
     }

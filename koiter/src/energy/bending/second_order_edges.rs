@@ -20,6 +20,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::BendingStrains;
 use super::hinge::turning_angle;
 use super::quadratic_form::{Functional, QuadraticForm, WingFunctionals, scaled_sum};
 use crate::Vec3;
@@ -258,11 +259,7 @@ impl SecondOrderEdges {
         let edge = &self.edges[stencil];
         let mut energy = R::from(0.0);
         for s in gauss_points() {
-            let [tangent, a, b] = point_weights(s).map(|w| -> [R; 3] {
-                std::array::from_fn(|axis| {
-                    (0..9).fold(R::from(0.0), |sum, n| sum + q[3 * n + axis] * w[n])
-                })
-            });
+            let [tangent, a, b] = derivatives_at(s, q);
             if edge.stiffness > 0.0 {
                 let angle = turning_angle(&[[R::from(0.0); 3], tangent, a, b]);
                 energy = energy + angle * angle * (0.5 * edge.stiffness);
@@ -277,6 +274,34 @@ impl SecondOrderEdges {
             }
         }
         energy
+    }
+}
+
+/// T, a and b at a point of the edge.
+fn derivatives_at<R: Real>(s: f64, q: &[R; 27]) -> [[R; 3]; 3] {
+    point_weights(s).map(|weights| {
+        std::array::from_fn(|axis| {
+            (0..9).fold(R::from(0.0), |sum, n| sum + q[3 * n + axis] * weights[n])
+        })
+    })
+}
+
+/// θ at the two Gauss points; 0 at edges of the boundary.
+impl BendingStrains<27, 9> for SecondOrderEdges {
+    const STRAINS: usize = 2;
+
+    fn strains<R: Real>(&self, stencil: usize, q: &[R; 27], strains: &mut [R]) {
+        if self.edges[stencil].stiffness == 0.0 {
+            return;
+        }
+        for (s, strain) in gauss_points().into_iter().zip(strains) {
+            let [tangent, a, b] = derivatives_at(s, q);
+            *strain = turning_angle(&[[R::from(0.0); 3], tangent, a, b]);
+        }
+    }
+
+    fn strain_stiffness(&self, stencil: usize) -> f64 {
+        self.edges[stencil].stiffness
     }
 }
 

@@ -21,6 +21,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::BendingStrains;
 use super::quadratic_basis::{CURVATURES, SAMPLES, slopes};
 use super::quadratic_form::{Functional, QuadraticForm};
 use crate::Vec3;
@@ -147,25 +148,38 @@ impl SecondOrderFaces {
 
     /// E of one face over any numbers: the oracle of the tests.
     pub fn formula<R: Real>(&self, face: usize, q: &[R; 18]) -> R {
+        let mut traces = [R::from(0.0); 3];
+        self.strains(face, q, &mut traces);
+        let squares = traces.map(|trace| trace * trace);
+        (squares[0] + squares[1] + squares[2]) * self.stiffness(face)
+    }
+}
+
+/// tr Ī⁻¹ II at the three samples.
+impl BendingStrains<18, 6> for SecondOrderFaces {
+    const STRAINS: usize = 3;
+
+    fn strains<R: Real>(&self, face: usize, q: &[R; 18], strains: &mut [R]) {
         let sum = |weight: &dyn Fn(usize) -> f64| -> [R; 3] {
             std::array::from_fn(|axis| {
                 (0..6).fold(R::from(0.0), |total, n| total + q[3 * n + axis] * weight(n))
             })
         };
         let [m11, m12, m22] = self.frames[face].inverse;
-        let mut energy = R::from(0.0);
-        for point in SAMPLES {
+        for (point, strain) in SAMPLES.into_iter().zip(strains) {
             let a = sum(&|n| slopes(point)[n][0]);
             let b = sum(&|n| slopes(point)[n][1]);
             let normal = cross(&a, &b);
             let length = norm(&normal);
             let form = |k: usize| dot(&sum(&|n| CURVATURES[n][k]), &normal) / length;
-            let trace = form(0) * (m11 * m11 + m12 * m12)
+            *strain = form(0) * (m11 * m11 + m12 * m12)
                 + form(1) * (2.0 * m12 * m22)
                 + form(2) * (m22 * m22);
-            energy = energy + trace * trace * self.stiffness(face);
         }
-        energy
+    }
+
+    fn strain_stiffness(&self, face: usize) -> f64 {
+        2.0 * self.stiffness(face)
     }
 }
 

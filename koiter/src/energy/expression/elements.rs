@@ -19,7 +19,7 @@ use crate::rest::RestFrame;
 pub(super) const MAX_QUANTITIES: usize = 24;
 
 /// Elements of one kind, of `N` unknowns in `K` points.
-pub trait Elements<const N: usize, const K: usize>: Send + Sync {
+pub trait Elements<const N: usize, const K: usize>: Clone + Send + Sync {
     /// Names of their quantities.
     const NAMES: &'static [&'static str];
     /// Weights of the points in the position of an element.

@@ -25,11 +25,13 @@ mod functions;
 mod kind;
 mod parse;
 mod potential;
+mod potential_damping;
 mod program;
 mod rate_potential;
 mod settings;
 mod tokens;
 mod whole_potential;
+mod whole_shell;
 
 pub use elements::{
     EdgeElement, Edges, Elements, FaceElement, Faces, HingeElement, Hinges, VertexElement, Vertices,
@@ -39,10 +41,11 @@ pub use functions::{FUNCTIONS, FunctionInfo};
 pub use kind::ElementKind;
 pub use parse::{MAX_INSTRUCTIONS, MAX_NESTING, MAX_PARAMETERS, MAX_TEXT, Names};
 pub use potential::Potential;
+pub use potential_damping::PotentialDamping;
 pub use program::Program;
 pub use rate_potential::{RateEnergy, RatePotential};
 pub use settings::{Parameter, Settings};
-pub use whole_potential::WholePotential;
+pub use whole_potential::{WholeDamping, WholePotential};
 
 #[cfg(test)]
 mod tests;

@@ -41,6 +41,41 @@ impl<E> Potential<E> {
             is_density,
         }
     }
+
+    pub(super) fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// f for these quantities.
+    pub(super) fn value_of<R: Real>(&self, quantities: &[R]) -> R {
+        self.program.evaluate(quantities, self.settings.values())
+    }
+
+    /// Those quantities of an element that are used.
+    pub(super) fn quantities<const N: usize, const K: usize, R: Real>(
+        &self,
+        element: usize,
+        q: &[R; N],
+    ) -> [R; MAX_QUANTITIES]
+    where
+        E: Elements<N, K>,
+    {
+        let mut quantities = [R::from(0.0); MAX_QUANTITIES];
+        let used = self.program.used();
+        self.elements.evaluate(element, q, used, &mut quantities);
+        quantities
+    }
+
+    /// m of an element.
+    pub(super) fn scale<const N: usize, const K: usize>(&self, element: usize) -> f64
+    where
+        E: Elements<N, K>,
+    {
+        match self.is_density {
+            true => self.elements.measure(element),
+            false => 1.0,
+        }
+    }
 }
 
 impl<const N: usize, const K: usize, E: Elements<N, K>> ElementFunction<N, K> for Potential<E> {
@@ -57,18 +92,15 @@ impl<const N: usize, const K: usize, E: Elements<N, K>> ElementFunction<N, K> fo
     }
 
     fn energy<R: Real>(&self, element: usize, q: &[R; N]) -> R {
-        let mut quantities = [R::from(0.0); MAX_QUANTITIES];
-        let used = self.program.used();
-        self.elements.evaluate(element, q, used, &mut quantities);
-        let value = self.program.evaluate(&quantities, self.settings.values());
-        match self.is_density {
-            true => value * self.elements.measure(element),
-            false => value,
-        }
+        self.value_of(&self.quantities(element, q)) * self.scale(element)
     }
 
     fn set_time(&mut self, time: f64) {
         self.settings.set_time(time);
+    }
+
+    fn settings(&self) -> &[f64] {
+        self.settings.told(&self.program)
     }
 
     fn describe(&self, element: usize) -> String {

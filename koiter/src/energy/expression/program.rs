@@ -119,6 +119,8 @@ fn pair<R: Real>(instruction: Instruction, a: R, b: R) -> R {
         Instruction::Subtract => a - b,
         Instruction::Multiply => a * b,
         Instruction::Divide => a / b,
+        // Defined for negative bases too where the exponent is whole.
+        _ if b.is_constant() => power(a, b.value()),
         _ => (a.ln() * b).exp(),
     }
 }

@@ -190,6 +190,10 @@ impl<const N: usize, const K: usize, E: Elements<N, K>> LocalEnergy<N, K> for Ra
         self.settings.set_time(time);
     }
 
+    fn settings(&self) -> &[f64] {
+        self.settings.told(&self.program)
+    }
+
     fn value(&self, stencil: usize, q: &SVector<f64, N>) -> f64 {
         self.formula(stencil, &std::array::from_fn(|i| q[i]))
     }

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::program::Program;
+
 /// A parameter: its value at a time [s].
 pub type Parameter = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
 
@@ -36,6 +38,12 @@ impl Settings {
     /// Time, then parameters.
     pub(super) fn values(&self) -> &[f64] {
         &self.values
+    }
+
+    /// Parameters, after the time where a program speaks of it.
+    pub(super) fn told(&self, program: &Program) -> &[f64] {
+        let first = usize::from(!program.uses_time());
+        &self.values[first..]
     }
 }
 

@@ -29,7 +29,7 @@ use super::error::{ResultError, read_if_there};
 use super::topology_file::checked_body;
 use crate::Vec3;
 use crate::burning::BurningState;
-use crate::integrate::{Memory, PathPoint, State};
+use crate::integrate::{Memory, PathPoint, StableStep, State};
 use crate::io::bytes::{ByteReader, Endian};
 use crate::io::checksum::crc32;
 use crate::process::RestState;
@@ -37,7 +37,7 @@ use crate::scene::{Anchor, Snapshot};
 use crate::solve::WorkspaceHistory;
 
 const MAGIC: &[u8; 8] = b"KOITERCP";
-const FORMAT: u32 = 7;
+const FORMAT: u32 = 8;
 
 /// All that is needed to go on with a run to the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -243,13 +243,17 @@ impl Bytes {
                 self.numbers(velocities);
             }
             Memory::Accelerated {
-                stable_dt,
-                age,
+                stable,
                 largest_kinetic,
             } => {
                 self.0.push(2);
-                self.f64(*stable_dt);
-                self.u64(*age);
+                self.0.push(stable.is_some().into());
+                if let Some(stable) = stable {
+                    self.f64(stable.dt);
+                    self.u64(stable.age);
+                    self.f64(stable.speed);
+                    self.numbers(&stable.settings);
+                }
                 self.f64(*largest_kinetic);
             }
         }
@@ -372,8 +376,15 @@ fn memory(reader: &mut ByteReader) -> Option<Memory> {
             velocities: numbers(reader)?,
         }),
         2 => Some(Memory::Accelerated {
-            stable_dt: reader.f64()?,
-            age: reader.u64()?,
+            stable: match reader.u8()? {
+                0 => None,
+                _ => Some(StableStep {
+                    dt: reader.f64()?,
+                    age: reader.u64()?,
+                    speed: reader.f64()?,
+                    settings: numbers(reader)?,
+                }),
+            },
             largest_kinetic: reader.f64()?,
         }),
         _ => None,

@@ -4,10 +4,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::ShellSpec;
-use super::check::{Checked, error, not_negative};
+use super::check::{Checked, not_negative};
 use crate::scene::damping::DampingOptions;
-use crate::scene::error::SceneErrorKind as Kind;
-use crate::scene::model::BendingModel;
 
 /// Damping in dynamics: of Rayleigh, and of hinges; 0 damps nothing.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
@@ -17,8 +15,8 @@ pub struct DampingSpec {
     /// rate.
     #[serde(default)]
     pub mass: f64,
-    /// Time by which stress runs ahead of strain [s]: damping proportional to the stiffness of membrane and bending. A
-    /// vibration of angular frequency ω has half of stiffness times ω of the critical damping. Rigid motions are not damped.
+    /// Time by which stress runs ahead of strain [s]: damping proportional to the stiffness of membrane, bending and
+    /// energies written as texts. A vibration of angular frequency ω has half of stiffness times ω of the critical damping. Rigid motions are not damped.
     #[serde(default)]
     pub stiffness: f64,
     /// k_D of the damping k_D ℓ̄/h̄ θ̇ of hinge angles [J·s], whatever the bending model; weights of hinges are those of
@@ -37,7 +35,7 @@ impl DampingSpec {
     }
 }
 
-/// Checks the ranges of `damping` of a shell, and that its bending can be damped.
+/// Checks the ranges of `damping` of a shell.
 pub(super) fn check_damping(path: &str, shell: &ShellSpec) -> Checked {
     let Some(damping) = &shell.damping else {
         return Ok(());
@@ -45,17 +43,5 @@ pub(super) fn check_damping(path: &str, shell: &ShellSpec) -> Checked {
     let at = |key: &str| format!("{path}.damping.{key}");
     not_negative(&at("mass"), damping.mass, "1/s")?;
     not_negative(&at("stiffness"), damping.stiffness, "s")?;
-    not_negative(&at("hinges"), damping.hinges, "J·s")?;
-    let is_undamped = !shell.bending.measures_curvature() && shell.bending != BendingModel::None;
-    if damping.stiffness > 0.0 && is_undamped {
-        let message = format!(
-            "bending model '{}' of shell '{}' has no measure of curvature that turns with the shell, whose rate could be damped",
-            shell.bending.info().name,
-            shell.name
-        );
-        let help =
-            "use damping.mass or damping.hinges, or another bending model, such as bac or ds-theta";
-        return Err(error(Kind::Conflict, &at("stiffness"), message).with_help(help));
-    }
-    Ok(())
+    not_negative(&at("hinges"), damping.hinges, "J·s")
 }

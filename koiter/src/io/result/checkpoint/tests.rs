@@ -66,12 +66,20 @@ fn what_was_written_is_read_back() {
     );
     written.snapshot.kappa = None;
     written.snapshot.state.path = None;
-    let accelerated = Memory::Accelerated {
-        stable_dt: f64::INFINITY,
-        age: 7,
+    let implicit = Memory::Accelerated {
+        stable: None,
         largest_kinetic: 0.25,
     };
-    for memory in [Memory::None, accelerated] {
+    let explicit = Memory::Accelerated {
+        stable: Some(StableStep {
+            dt: 1e-4,
+            age: 7,
+            speed: 0.5,
+            settings: vec![2.0, -1.0],
+        }),
+        largest_kinetic: 0.0,
+    };
+    for memory in [Memory::None, implicit, explicit] {
         written.snapshot.state.memory = memory;
         assert_eq!(
             Checkpoint::from_bytes(&written.to_bytes()).unwrap(),

@@ -21,18 +21,6 @@ fn damping_is_none_unless_it_is_given_and_never_negative() {
 }
 
 #[test]
-fn quadratic_bending_is_not_damped_by_stiffness() {
-    let with = |damping: &str| {
-        let keys = format!("thickness = 1e-3\nbending = \"qb-cr\"\ndamping.{damping}");
-        parse(&SCENE.replace("thickness = 1e-3", &keys))
-    };
-    let error = with("stiffness = 1e-3").unwrap_err();
-    assert_eq!(error.path, "shell.cloth.damping.stiffness");
-    assert_eq!(error.kind, Kind::Conflict);
-    assert!(with("hinges = 1e-7").is_ok() && with("mass = 1.0").is_ok());
-}
-
-#[test]
 fn the_watch_on_energy_has_a_positive_share() {
     let with = |share: &str| {
         let solver = format!("\n[solver.newmark]\nenergy_growth = {share}\n");
