@@ -97,49 +97,12 @@ pub(super) fn check(gates: &mut Gates) -> Result<(), Failure> {
     for (beta, steps, words) in [(0.0, EXPLICIT, "explicit"), (0.25, IMPLICIT, "implicit")] {
         let mut runs = Vec::new();
         for dt in steps {
-            let case = format!("conservation, {words}, {dt:e} s");
             let drifts = Drifts::of(beta, dt)?;
-            gates.check(
-                &case,
-                "drift of momentum",
-                "",
-                drifts.linear,
-                Gate::Below(ROUND_OFF),
-            );
-            gates.check(
-                &case,
-                "of modified angular momentum",
-                "",
-                drifts.modified,
-                Gate::Below(ROUND_OFF),
-            );
-            gates.check(
-                &case,
-                "steps taken in parts",
-                "",
-                drifts.cut as f64,
-                Gate::Below(1.0),
-            );
-            let angular = if beta == 0.0 {
-                Gate::Below(ROUND_OFF)
-            } else {
-                Gate::Free
-            };
-            gates.check(&case, "of angular momentum", "", drifts.angular, angular);
-            gates.check(
-                &case,
-                "largest change of energy",
-                "",
-                drifts.energy,
-                Gate::Free,
-            );
-            let share = drifts.trend / drifts.energy;
-            gates.check(
-                &case,
-                "its trend by the largest",
-                "",
-                share,
-                Gate::Below(0.1),
+            check_drifts(
+                gates,
+                &drifts,
+                beta,
+                &format!("conservation, {words}, {dt:e} s"),
             );
             runs.push(drifts);
         }
@@ -161,17 +124,27 @@ pub(super) fn check(gates: &mut Gates) -> Result<(), Failure> {
         }
         check_order(gates, beta, words)?;
     }
-    let case = "conservation, explicit";
     // Up to the reference's 2/ω, and not far below.
     let gate = Gate::Between(0.9 * LONGEST, LONGEST);
-    gates.check(
-        case,
-        "longest step that is not refused",
-        "s",
-        longest_step()?,
-        gate,
-    );
+    let figure = "longest step that is not refused";
+    gates.check("conservation, explicit", figure, "s", longest_step()?, gate);
     check_gain(gates)
+}
+
+fn check_drifts(gates: &mut Gates, drifts: &Drifts, beta: f64, case: &str) {
+    let exact = Gate::Below(ROUND_OFF);
+    let angular = if beta == 0.0 { exact } else { Gate::Free };
+    let trend = drifts.trend / drifts.energy;
+    for (figure, value, gate) in [
+        ("drift of momentum", drifts.linear, exact),
+        ("of modified angular momentum", drifts.modified, exact),
+        ("steps taken in parts", drifts.cut as f64, Gate::Below(1.0)),
+        ("of angular momentum", drifts.angular, angular),
+        ("largest change of energy", drifts.energy, Gate::Free),
+        ("its trend by the largest", trend, Gate::Below(0.1)),
+    ] {
+        gates.check(case, figure, "", value, gate);
+    }
 }
 
 /// Order in time of positions after 10 ms, by differences of runs whose steps halve.

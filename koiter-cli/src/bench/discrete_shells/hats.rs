@@ -46,103 +46,118 @@ struct Fall {
     gains: [f64; 2],
 }
 
-pub(super) fn check(gates: &mut Gates) -> Result<(), Failure> {
-    let table = include_str!("../../../../benchmarks/discrete-shells/hats.csv");
-    let mut crowns: Vec<f64> = Vec::new();
-    for row in rows(table) {
-        let name = row[0];
+/// A row of the reference, in its own units but for the name.
+struct Reference {
+    name: String,
+    is_damped: bool,
+    /// Least height of the crown, largest waviness of the rim [m].
+    crown: f64,
+    waviness: f64,
+    /// Largest stored energy by that of the impact, rebound by drop.
+    stored: f64,
+    rebound: f64,
+}
+
+impl Reference {
+    fn of(row: &[&str]) -> Self {
         let number = |k: usize| row[k].parse::<f64>().unwrap_or(f64::NAN);
-        let is_damped = number(1) > 0.0;
-        let fall = match is_damped {
-            false => fall(name, &["steps=fine"], UNDAMPED_END)?,
-            true => fall(
-                name,
-                &[
-                    "damping=hinges",
-                    "phase.rebound.end=0.6",
-                    "phase.rebound.dt=2e-4",
-                ],
-                DAMPED_END,
-            )?,
-        };
-        let case = format!("hats, {name}{}", if is_damped { ", damped" } else { "" });
+        Self {
+            name: row[0].to_owned(),
+            is_damped: number(1) > 0.0,
+            crown: 1e-2 * number(2),
+            waviness: 1e-2 * number(3),
+            stored: number(4),
+            rebound: number(5),
+        }
+    }
+
+    fn fall(&self) -> Result<Fall, Failure> {
+        let damped = [
+            "damping=hinges",
+            "phase.rebound.end=0.6",
+            "phase.rebound.dt=2e-4",
+        ];
+        match self.is_damped {
+            false => fall(&self.name, &["steps=fine"], UNDAMPED_END),
+            true => fall(&self.name, &damped, DAMPED_END),
+        }
+    }
+
+    fn case(&self) -> String {
+        let damped = if self.is_damped { ", damped" } else { "" };
+        format!("hats, {}{damped}", self.name)
+    }
+
+    /// Impact, compression and rebound.
+    fn check_motion(&self, gates: &mut Gates, fall: &Fall) {
+        let case = self.case();
         // Free fall to where the barrier begins.
-        let touch = (2.0 * (DROP - 2e-3) / 9.81f64).sqrt();
-        gates.check(
-            &case,
-            "first touch",
-            "s",
-            fall.touch,
-            Gate::Near(touch, 1e-3),
-        );
+        let touch = Gate::Near((2.0 * (DROP - 2e-3) / 9.81f64).sqrt(), 1e-3);
+        gates.check(&case, "first touch", "s", fall.touch, touch);
         let compression = fall.lowest[1] - fall.touch;
-        let [least, most] = COMPRESSION;
-        gates.check(
-            &case,
-            "from there to the lowest centre",
-            "s",
-            compression,
-            Gate::Between(least, most),
-        );
+        let figure = "from there to the lowest centre";
+        let gate = Gate::Between(COMPRESSION[0], COMPRESSION[1]);
+        gates.check(&case, figure, "s", compression, gate);
         let rebound = (fall.rise - fall.lowest[0]) / DROP;
         gates.check(&case, "rebound by drop", "", rebound, Gate::Above(0.0));
-        gates.check(
-            &case,
-            "the same in the reference",
-            "",
-            rebound,
-            Gate::Beside(number(5)),
-        );
-        gates.check(
-            &case,
-            "least height of the crown",
-            "m",
-            fall.crown,
-            Gate::Beside(1e-2 * number(2)),
-        );
-        gates.check(
-            &case,
-            "largest waviness of the rim",
-            "m",
-            fall.waviness,
-            Gate::Beside(1e-2 * number(3)),
-        );
+        for (figure, unit, value, reference) in [
+            ("the same in the reference", "", rebound, self.rebound),
+            ("least height of the crown", "m", fall.crown, self.crown),
+            (
+                "largest waviness of the rim",
+                "m",
+                fall.waviness,
+                self.waviness,
+            ),
+        ] {
+            gates.check(&case, figure, unit, value, Gate::Beside(reference));
+        }
+    }
+
+    fn check_energy(&self, gates: &mut Gates, fall: &Fall) {
+        let case = self.case();
         let stored = fall.stored / fall.impact;
-        gates.check(
-            &case,
-            "largest stored energy by that of the impact",
-            "",
-            stored,
-            Gate::Beside(number(4)),
-        );
+        let figure = "largest stored energy by that of the impact";
+        gates.check(&case, figure, "", stored, Gate::Beside(self.stored));
         let [largest, last] = fall.gains.map(|gain| gain / fall.impact);
-        if is_damped {
-            gates.check(
-                &case,
+        let (figure, value, gate) = match self.is_damped {
+            true => (
                 "energy lost by 0.35 s, by that of the impact",
-                "",
                 -last,
                 Gate::Above(LOSS),
-            );
+            ),
+            false => (
+                "largest change of energy",
+                largest,
+                Gate::Below(ENERGY_TOLERANCE),
+            ),
+        };
+        gates.check(&case, figure, "", value, gate);
+    }
+}
+
+pub(super) fn check(gates: &mut Gates) -> Result<(), Failure> {
+    let table = include_str!("../../../../benchmarks/discrete-shells/hats.csv");
+    let mut softer: Option<f64> = None;
+    for row in rows(table) {
+        let hat = Reference::of(&row);
+        let fall = hat.fall()?;
+        hat.check_motion(gates, &fall);
+        hat.check_energy(gates, &fall);
+        if hat.is_damped {
             continue;
         }
-        gates.check(
-            &case,
-            "largest change of energy",
-            "",
-            largest,
-            Gate::Below(ENERGY_TOLERANCE),
-        );
-        if let Some(softer) = crowns.last() {
+        if let Some(softer) = softer {
+            let figure = "crown by that of the softer";
             gates.check(
-                &case,
-                "crown by that of the softer",
+                &hat.case(),
+                figure,
                 "",
                 fall.crown / softer,
                 Gate::Above(1.0),
             );
         }
-        crowns.push(fall.crown);
+        softer = Some(fall.crown);
     }
     Ok(())
 }

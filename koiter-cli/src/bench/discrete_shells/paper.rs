@@ -21,6 +21,8 @@ const ANGLE_TOLERANCE: f64 = 2e-3;
 const SMALL: f64 = 45.0;
 /// The crease of the sheet whose corners are pulled [°].
 const PULLED: f64 = 60.0;
+/// 1e-6 dyn [N]: of what Newton's method leaves at a free vertex.
+const FORCE_TOLERANCE: f64 = 1e-11;
 /// 1 erg [J].
 const ERG: f64 = 1e-7;
 
@@ -95,6 +97,8 @@ struct Sheet {
     row: Vec<usize>,
     /// The last step of Newton's method in the last equilibrium [m].
     residual: f64,
+    /// The largest force that is left at a vertex that is free, in all equilibria so far [N].
+    left_over: f64,
 }
 
 impl Sheet {
@@ -107,6 +111,7 @@ impl Sheet {
             trace,
             scene,
             residual: f64::INFINITY,
+            left_over: 0.0,
         })
     }
 
@@ -118,8 +123,27 @@ impl Sheet {
             let report = self.trace.step(self.scene.timeline.dt(step))?;
             most = most.max(report.newton_iterations);
             self.residual = report.residual;
+            self.left_over = self.left_over.max(self.largest_force());
         }
         Ok(most)
+    }
+
+    /// The largest force at a vertex that nothing holds [N].
+    fn largest_force(&self) -> f64 {
+        let simulation = &self.trace.simulation;
+        let mut gradient = simulation.elastic_gradient();
+        let constraints = self.scene.model.constraints.iter();
+        for constraint in constraints.filter(|held| held.is_due(simulation.time())) {
+            for vertex in &constraint.vertices {
+                for axis in (0..3).filter(|&axis| constraint.axes[axis]) {
+                    gradient[3 * vertex.0 as usize + axis] = 0.0;
+                }
+            }
+        }
+        let forces = gradient
+            .chunks_exact(3)
+            .map(|g| Vec3::from_column_slice(g).norm());
+        forces.fold(0.0, f64::max)
     }
 
     /// Energy of membrane and bending [J].
@@ -242,6 +266,9 @@ impl Sheet {
             self.residual,
             Gate::Below(1e-9),
         );
+        let force = self.left_over;
+        let figure = "force left at a free vertex, at most";
+        gates.check(case, figure, "N", force, Gate::Below(FORCE_TOLERANCE));
         Ok(())
     }
 }
@@ -271,8 +298,8 @@ mod tests {
         let failures = &gates.table.failures;
         assert!(failures.is_empty(), "{failures:?}");
         let rows = gates.table.json()["rows"].as_array().map_or(0, Vec::len);
-        // Six radii, three figures of the curl and its comparison, two of each crease, two squares, four of the pull.
-        assert_eq!(rows, 6 + 4 + 2 * 5 + 2 + 4);
+        // Six radii, three figures of the curl and its comparison, two of each crease, two squares, five of the pull.
+        assert_eq!(rows, 6 + 4 + 2 * 5 + 2 + 5);
     }
 
     #[test]

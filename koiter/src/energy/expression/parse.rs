@@ -200,6 +200,10 @@ impl Parser<'_> {
         loop {
             let column = self.column();
             if self.take('*') {
+                if self.peek().kind == TokenKind::Sign('*') {
+                    let error = self.unexpected("a factor");
+                    return Err(error.with_help("powers are written with '^'"));
+                }
                 self.signed()?;
                 self.emit(Instruction::Multiply, 2, column)?;
             } else if self.take('/') {
@@ -287,6 +291,11 @@ impl Parser<'_> {
 
     fn call(&mut self, name: &str, column: usize) -> Parsed {
         let Some(info) = FUNCTIONS.iter().find(|known| known.name == name) else {
+            let elsewhere = NAMES_ELSEWHERE.iter().find(|(other, _)| *other == name);
+            if let Some((_, ours)) = elsewhere {
+                let error = ExpressionError::new(format!("there is no function '{name}'"), column);
+                return Err(error.with_help(format!("write {ours}")));
+            }
             let known = FUNCTIONS.map(|known| known.name);
             return Err(unknown("function", name, column, &known));
         };
@@ -334,6 +343,18 @@ impl Parser<'_> {
         self.emit(instruction, 0, column)
     }
 }
+
+/// What other languages call what is there too.
+const NAMES_ELSEWHERE: [(&str, &str); 8] = [
+    ("ln", "log(x), the natural logarithm"),
+    ("log10", "log(x) / log(10)"),
+    ("pow", "x^y"),
+    ("fabs", "abs(x)"),
+    ("fmin", "min(x, y)"),
+    ("fmax", "max(x, y)"),
+    ("cbrt", "x^(1/3)"),
+    ("clamp", "max(low, min(x, high))"),
+];
 
 fn unknown(what: &str, name: &str, column: usize, known: &[&str]) -> ExpressionError {
     let message = format!("there is no {what} '{name}'");

@@ -121,6 +121,9 @@ fn mistakes_have_a_column_and_say_what_to_do() {
         Some("lenght")
     );
     assert!(mistake("x < y").help.unwrap().contains("smoothstep"));
+    assert!(mistake("ln(x)").help.unwrap().contains("log(x)"));
+    assert!(mistake("pow(x, 2)").help.unwrap().contains("x^y"));
+    assert!(mistake("x**2").help.unwrap().contains("'^'"));
 }
 
 #[test]

@@ -411,7 +411,7 @@ fn unique<'a>(list: &str, names: impl Iterator<Item = Option<&'a str>>) -> Check
             return Err(error(
                 Kind::Conflict,
                 &path,
-                format!("there are two {list}s named '{name}'"),
+                format!("two [[{list}]] are named '{name}'"),
             ));
         }
     }

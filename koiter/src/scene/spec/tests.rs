@@ -544,7 +544,7 @@ fn keys_that_exclude_each_other_are_refused() {
         Kind::Conflict,
         "shell.1.name",
         (24, "\"cloth\""),
-        &["two shells named 'cloth'"],
+        &["two [[shell]] are named 'cloth'"],
     );
 }
 
