@@ -7,10 +7,10 @@ use std::str::FromStr;
 use koiter::Vec3;
 use koiter::energy::expression::{ElementKind, Names};
 use koiter::io::crc32;
-use koiter::io::read::{MeshFormat, parse_obj_quads, parse_png};
+use koiter::io::read::{MeshFormat, parse_obj_quads, parse_png, parse_point_cache};
 use koiter::io::result::{Checkpoint, Frame, Manifest, decode_stats, decode_topology};
 use koiter::mesh::{OrientationPolicy, Surface, SurfaceOptions, UnreferencedPolicy};
-use koiter::scene::{MeshSource, Scene, SceneFile, UnreadableMesh};
+use koiter::scene::{MeshSource, PointCache, Scene, SceneFile, UnreadableMesh};
 
 /// A reader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +27,8 @@ pub enum Target {
     Quads,
     /// PNG, to a texture.
     Texture,
+    /// PC2 or NPZ, to positions over time.
+    Points,
     /// A scene, to a checked model. Lines that begin with `#set ` are overrides.
     Scene,
     /// The text of an energy, parsed.
@@ -45,13 +47,14 @@ pub enum Target {
 
 impl Target {
     /// All readers.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Obj,
         Self::Ply,
         Self::Stl,
         Self::Off,
         Self::Quads,
         Self::Texture,
+        Self::Points,
         Self::Scene,
         Self::Expression,
         Self::Manifest,
@@ -70,6 +73,7 @@ impl Target {
             Self::Off => "off",
             Self::Quads => "quads",
             Self::Texture => "texture",
+            Self::Points => "points",
             Self::Scene => "scene",
             Self::Expression => "expression",
             Self::Manifest => "manifest",
@@ -92,6 +96,7 @@ impl Target {
             Self::Off => read_mesh(MeshFormat::Off, bytes),
             Self::Quads => parse_obj_quads(bytes).is_ok(),
             Self::Texture => parse_png(bytes).is_ok(),
+            Self::Points => parse_point_cache(bytes).is_ok(),
             Self::Scene => read_scene(bytes),
             Self::Expression => read_expression(bytes),
             Self::Manifest => Manifest::decode(Path::new("result"), bytes)
@@ -112,6 +117,15 @@ impl Target {
                 "v ", "f ", "vt ", "\\\n", "#", "/", "//", "vn ", "-1", "\r\n", "\n",
             ],
             Self::Texture => &["IHDR", "IDAT", "IEND", "PLTE", "tRNS", "\u{8}"],
+            Self::Points => &[
+                "POINTCACHE2",
+                "PK\u{3}\u{4}",
+                "PK\u{1}\u{2}",
+                "<f8",
+                "(2,)",
+                "positions.npy",
+                "times.npy",
+            ],
             Self::Ply => PLY_WORDS,
             Self::Stl => &[
                 "solid", "facet", "vertex ", "endfacet", "endloop", "endsolid", "\n",
@@ -241,6 +255,7 @@ const SCENE_WORDS: &[&str] = &[
     "from = ",
     "[[phase]]\n",
     "[[obstacle.deform]]\n",
+    "animation = { file = \"a\", fps = 1 }",
     "[[contact.pair]]\n",
     "scale = { factor = [[0, 1]] }",
     "axes = \"xyz\"",
@@ -304,6 +319,13 @@ impl MeshSource for Square {
         Surface::new(positions, faces, options).map_err(|error| UnreadableMesh {
             message: error.to_string(),
             help: None,
+        })
+    }
+
+    fn read_points(&self, _: &str) -> Result<PointCache, UnreadableMesh> {
+        Ok(PointCache {
+            times: None,
+            frames: vec![vec![Vec3::x(); 4], vec![Vec3::y(); 4]],
         })
     }
 }

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use koiter::burning::{QuadMesh, Texture};
 use koiter::io::read::{MeshFormat, RawMesh, ReadError, parse_obj_quads, parse_png};
-use koiter::io::{MAX_SCENE_BYTES, read_bounded, read_mesh, read_quads, read_texture};
+use koiter::io::{MAX_SCENE_BYTES, read_bounded, read_mesh, read_points, read_quads, read_texture};
 use koiter::mesh::{MeshError, Surface, SurfaceOptions};
 use koiter::scene::{
-    Document, MeshSource, Scene, SceneError, SceneErrorKind, SceneFile, UnreadableMesh, nearest,
+    Document, MeshSource, PointCache, Scene, SceneError, SceneErrorKind, SceneFile, UnreadableMesh,
+    nearest,
 };
 use koiter_render::CameraView;
 
@@ -333,6 +334,10 @@ impl MeshSource for Meshes {
             Some(bytes) => parse_png(bytes).map_err(|error| broken(file, &error)),
             None => read_texture(&self.path(file)).map_err(unreadable),
         }
+    }
+
+    fn read_points(&self, file: &str) -> Result<PointCache, UnreadableMesh> {
+        read_points(&self.path(file)).map_err(unreadable)
     }
 
     fn read_text(&self, file: &str) -> Result<String, UnreadableMesh> {

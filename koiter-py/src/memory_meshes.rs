@@ -4,9 +4,10 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use koiter::Vec3;
-use koiter::io::{MAX_SCENE_BYTES, read_bounded, read_mesh};
+use koiter::burning::{QuadMesh, Texture};
+use koiter::io::{MAX_SCENE_BYTES, read_bounded, read_mesh, read_points, read_quads, read_texture};
 use koiter::mesh::{Surface, SurfaceOptions};
-use koiter::scene::{MeshSource, UnreadableMesh};
+use koiter::scene::{MeshSource, PointCache, UnreadableMesh};
 
 /// Arrays by the name that stands for them in the scene, and the folder of files.
 pub(crate) struct MemoryMeshes {
@@ -31,6 +32,18 @@ impl MeshSource for MemoryMeshes {
                 .and_then(|mesh| mesh.into_surface(options))
                 .map_err(unreadable),
         }
+    }
+
+    fn read_quads(&self, file: &str) -> Result<QuadMesh, UnreadableMesh> {
+        read_quads(&self.folder.join(file)).map_err(unreadable)
+    }
+
+    fn read_texture(&self, file: &str) -> Result<Texture, UnreadableMesh> {
+        read_texture(&self.folder.join(file)).map_err(unreadable)
+    }
+
+    fn read_points(&self, file: &str) -> Result<PointCache, UnreadableMesh> {
+        read_points(&self.folder.join(file)).map_err(unreadable)
     }
 
     fn read_text(&self, file: &str) -> Result<String, UnreadableMesh> {

@@ -14,5 +14,5 @@ pub mod write;
 pub use atomic_file::write_atomically;
 pub use bounded_read::{MAX_DATA_BYTES, MAX_SCENE_BYTES, read_bounded};
 pub use checksum::crc32;
-pub use read::{RawMesh, ReadError, read_mesh, read_quads, read_texture};
+pub use read::{RawMesh, ReadError, read_mesh, read_points, read_quads, read_texture};
 pub use result::Checkpoint;

@@ -3,6 +3,7 @@
 mod arc_length;
 mod burning;
 mod composition;
+mod deformation;
 mod energies;
 mod loads;
 mod phases;
@@ -13,8 +14,7 @@ use super::document::Document;
 use super::error::{SceneError, SceneErrorKind as Kind, Warning};
 use super::memory;
 use super::model::{
-    Constraint, ContactOptions, FrictionPair, Model, Obstacle, ObstacleShape, Schedule, Shell,
-    SolverOptions,
+    Constraint, ContactOptions, FrictionPair, Model, Obstacle, ObstacleShape, Shell, SolverOptions,
 };
 use super::phases::Timeline;
 use super::placement::{MeshSource, ShapeError, move_point, move_to, place, turn};
@@ -210,41 +210,23 @@ impl Builder<'_> {
         Ok(rest.positions)
     }
 
-    /// Where the vertices of an obstacle of this shape are over time, if it deforms.
-    fn deformation(
-        &self,
-        obstacle: &ObstacleSpec,
-        shape: &ObstacleShape,
-    ) -> Result<Option<Schedule<Vec<Vec3>>>, SceneError> {
-        let (ObstacleShape::Mesh(start), false) = (shape, obstacle.deform.is_empty()) else {
-            return Ok(None);
-        };
-        let (mut times, mut values) = (vec![0.0], vec![start.positions.clone()]);
-        for (number, deform) in obstacle.deform.iter().enumerate() {
-            let path = format!("obstacle.{}.deform.{number}.mesh", obstacle.name);
-            let mut surface = self.mesh(&path, &deform.mesh)?;
-            let (path, name) = match &deform.mesh.file {
-                Some(file) => (format!("{path}.file"), format!("'{file}'")),
-                None => (path, "this".to_owned()),
-            };
-            check_same_triangles(&path, [&name, "obstacle's"], &surface, start)?;
-            move_to(&mut surface, obstacle.rotate.as_ref(), obstacle.translate);
-            times.push(deform.time);
-            values.push(surface.positions);
-        }
-        Ok(Some(Schedule { times, values }))
-    }
-
     fn mesh(&self, path: &str, spec: &MeshSpec) -> Result<Surface, SceneError> {
         let shape = spec.given_shapes().first().copied().unwrap_or("file");
         place(spec, self.source).map_err(|error| mesh_error(error, &format!("{path}.{shape}")))
     }
 
     fn obstacle(&self, obstacle: &ObstacleSpec) -> Result<Obstacle, SceneError> {
-        let shape = self.obstacle_shape(obstacle)?;
+        let mut shape = self.obstacle_shape(obstacle)?;
+        let mut deformation = None;
+        if let ObstacleShape::Mesh(start) = &mut shape {
+            deformation = self.deformation(obstacle, start)?;
+            if let Some(points) = &deformation {
+                start.positions = points.points_at(0.0);
+            }
+        }
         Ok(Obstacle {
             name: obstacle.name.clone(),
-            deformation: self.deformation(obstacle, &shape)?,
+            deformation,
             shape,
             friction: obstacle.friction,
             motion: obstacle.motion.to_motion(),

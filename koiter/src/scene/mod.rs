@@ -26,6 +26,7 @@ mod modes;
 mod obstacles;
 mod outside;
 mod phases;
+mod point_cache;
 mod position_bending;
 pub mod schedule;
 mod simulation;
@@ -78,6 +79,7 @@ pub use self::{
     material_models::MaterialModelInfo,
     outside::ChangeError,
     phases::{PhaseSteps, Timeline},
+    point_cache::PointCache,
     simulation::{Simulation, SystemStats},
     snapshot::{RestoreError, Snapshot},
 };

@@ -2,6 +2,7 @@
 
 use nalgebra::{Rotation3, Unit};
 
+use super::point_cache::PointCache;
 use super::spec::{CylinderSpec, Diagonals, MeshSpec, RotationSpec, UpAxis};
 use crate::Vec3;
 use crate::burning::{QuadMesh, Texture};
@@ -37,6 +38,14 @@ pub trait MeshSource {
     /// # Errors
     /// Whatever the reader says.
     fn read_texture(&self, _file: &str) -> Result<Texture, UnreadableMesh> {
+        Err(no_files())
+    }
+
+    /// The positions over time of the file named in a scene; refused unless the source has such files.
+    ///
+    /// # Errors
+    /// Whatever the reader says.
+    fn read_points(&self, _file: &str) -> Result<PointCache, UnreadableMesh> {
         Err(no_files())
     }
 }
@@ -78,26 +87,77 @@ pub(super) enum ShapeError {
     Generator(#[from] GeneratorError),
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    #[error("a frame has {found} vertices, the mesh {expected}; export both from the same mesh")]
+    PointCount { found: usize, expected: usize },
 }
 
 /// Reads or generates a mesh and puts it in its place.
 pub(super) fn place(spec: &MeshSpec, source: &dyn MeshSource) -> Result<Surface, ShapeError> {
     let mut surface = make(spec, source)?;
-    let scale = spec.units.in_metres() * spec.scale;
-    for x in &mut surface.positions {
-        *x *= scale;
-        if spec.up == UpAxis::Y {
-            *x = Vec3::new(x.x, -x.z, x.y);
-        }
-    }
-    if spec.center {
-        let (low, high) = surface.bounding_box();
-        let center = (low + high) / 2.0;
-        surface.positions.iter_mut().for_each(|x| *x -= center);
-    }
-    move_to(&mut surface, spec.rotate.as_ref(), spec.translate);
+    Placement::of(spec, &surface).apply(&mut surface.positions);
     // Checked again: a scale may push coordinates out of the range where areas can be computed.
     Ok(Surface::from_mesh(surface.mesh, surface.positions)?)
+}
+
+/// Puts other positions of a mesh's vertices, frame by frame, where [`place`] would, as if they were the mesh's own.
+pub(super) fn place_points(
+    spec: &MeshSpec,
+    source: &dyn MeshSource,
+    mut frames: Vec<Vec<Vec3>>,
+) -> Result<Vec<Vec<Vec3>>, ShapeError> {
+    let surface = make(spec, source)?;
+    let expected = surface.positions.len();
+    if let Some(found) = frames.iter().map(Vec::len).find(|&found| found != expected) {
+        return Err(ShapeError::PointCount { found, expected });
+    }
+    let placement = Placement::of(spec, &surface);
+    for points in &mut frames {
+        placement.apply(points);
+    }
+    Ok(frames)
+}
+
+/// What is done to the vertices of a mesh: scaled, stood up, centred, turned, moved.
+struct Placement<'a> {
+    spec: &'a MeshSpec,
+    /// What is the origin after centring [m].
+    center: Option<Vec3>,
+}
+
+impl<'a> Placement<'a> {
+    /// That of a mesh as it was read or generated, which says where its centre is.
+    fn of(spec: &'a MeshSpec, surface: &Surface) -> Self {
+        let mut placement = Self { spec, center: None };
+        if spec.center {
+            let mut points = surface.positions.clone();
+            placement.stand_up(&mut points);
+            let box_of = |start: [Vec3; 2], x: &Vec3| [start[0].inf(x), start[1].sup(x)];
+            let start = [points[0], points[0]];
+            let [low, high] = points.iter().fold(start, box_of);
+            placement.center = Some((low + high) / 2.0);
+        }
+        placement
+    }
+
+    fn stand_up(&self, points: &mut [Vec3]) {
+        let scale = self.spec.units.in_metres() * self.spec.scale;
+        for x in points {
+            *x *= scale;
+            if self.spec.up == UpAxis::Y {
+                *x = Vec3::new(x.x, -x.z, x.y);
+            }
+        }
+    }
+
+    fn apply(&self, points: &mut [Vec3]) {
+        self.stand_up(points);
+        for x in points {
+            if let Some(center) = self.center {
+                *x -= center;
+            }
+            *x = move_point(*x, self.spec.rotate.as_ref(), self.spec.translate);
+        }
+    }
 }
 
 /// Rotates, then translates.

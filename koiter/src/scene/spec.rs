@@ -47,7 +47,7 @@ pub use energy::{EnergySpec, ParameterSpec};
 pub use load::{EdgeChoice, LoadSpec};
 pub use material::{LayerSpec, MaterialSpec};
 pub use newmark::NewmarkSpec;
-pub use obstacle::{DeformSpec, ObstacleSpec};
+pub use obstacle::{AnimationSpec, DeformSpec, ObstacleSpec};
 pub use phase::PhaseSpec;
 pub use process::{CreaseSpec, CurlSpec, ProcessSpec, YieldSpec};
 pub use shape::{

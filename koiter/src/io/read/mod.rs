@@ -1,4 +1,4 @@
-//! Mesh files in: OBJ, PLY, STL, OFF; quads from OBJ; textures from PNG.
+//! Mesh files in: OBJ, PLY, STL, OFF; quads from OBJ; textures from PNG; positions over time from PC2 and NPZ.
 //!
 //! Only positions and faces are read; polygons become fans of triangles about their first corner, which is right for
 //! convex polygons. Lengths are taken as metres and axes as they are.
@@ -8,6 +8,7 @@ mod obj;
 mod off;
 mod ply;
 mod png;
+mod point_cache;
 mod quads;
 mod stl;
 mod text;
@@ -17,6 +18,7 @@ pub use error::{Location, ParseError, ReadError};
 pub use obj::parse_obj;
 pub use off::parse_off;
 pub use ply::parse_ply;
+pub use point_cache::parse_point_cache;
 pub use quads::parse_obj_quads;
 pub use stl::parse_stl;
 
@@ -26,6 +28,7 @@ use crate::Vec3;
 use crate::burning::{QuadMesh, Texture};
 use crate::io::{MAX_DATA_BYTES, read_bounded};
 use crate::mesh::{Surface, SurfaceOptions};
+use crate::scene::PointCache;
 
 /// What a mesh file holds, before it is checked to be a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -144,6 +147,14 @@ pub fn read_quads(path: &Path) -> Result<QuadMesh, ReadError> {
 /// Not a regular file, a refusal of the system, a fault in the file.
 pub fn read_texture(path: &Path) -> Result<Texture, ReadError> {
     read_parsed(path, parse_png)
+}
+
+/// Reads positions over time; see [`parse_point_cache`].
+///
+/// # Errors
+/// Not a regular file, a refusal of the system, a fault in the file.
+pub fn read_points(path: &Path) -> Result<PointCache, ReadError> {
+    read_parsed(path, parse_point_cache)
 }
 
 fn read_parsed<T>(

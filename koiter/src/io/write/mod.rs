@@ -1,16 +1,30 @@
-//! Mesh files out: OBJ, PLY with fields, VTU with fields, PVD for a series of VTU files, GLB for stills and films.
+//! Files for other programs. Of a mesh: OBJ, STL, PLY and VTU with fields. Of a film: PVD, which lists VTU files, GLB, and VTKHDF,
+//! USDA and NPZ with fields, PC2 without.
 //!
 //! Each format has a function from mesh to bytes and one that writes the bytes to a file, whole or not at all.
 //! Lengths are metres; the up axis is stated in a comment where the format has comments.
 
+mod film;
 mod glb;
+mod hdf5;
+mod npz;
 mod obj;
+mod pc2;
 mod ply;
+mod stl;
+mod usda;
+mod vtkhdf;
 mod vtu;
 
 pub use glb::{GlbLook, MAX_GLB_FRAMES, glb_bytes, glb_frames, write_glb};
+pub use npz::{npz_bytes, write_npz};
 pub use obj::{obj_bytes, write_obj};
+pub(super) use pc2::PC2_MAGIC;
+pub use pc2::{pc2_bytes, write_pc2};
 pub use ply::{ply_bytes, write_ply};
+pub use stl::{stl_bytes, write_stl};
+pub use usda::{usda_bytes, write_usda};
+pub use vtkhdf::{vtkhdf_bytes, write_vtkhdf};
 pub use vtu::{pvd_bytes, vtu_bytes, write_pvd, write_vtu, write_vtu_series};
 
 use std::collections::HashSet;
@@ -97,9 +111,22 @@ pub enum WriteError {
     },
     /// A film of faces that change, in a format that moves vertices only.
     #[error(
-        "faces burn away from frame to frame, which a GLB film cannot show; export one frame, or all as vtu"
+        "faces burn away from frame to frame, which a {format} film cannot show; export one frame, or all as vtu, vtkhdf or usda"
     )]
-    ChangingFaces,
+    ChangingFaces {
+        /// The format.
+        format: &'static str,
+    },
+    /// A film of fields that come and go, in a format that names them once.
+    #[error(
+        "frame {frame} has other fields than the first, which a {format} film cannot show; export one frame, or all as vtu"
+    )]
+    ChangingFields {
+        /// The frame.
+        frame: usize,
+        /// The format.
+        format: &'static str,
+    },
     /// A frame to be exported could not be read.
     #[error(transparent)]
     Result(#[from] ResultError),
@@ -146,6 +173,11 @@ impl<'a> MeshWithFields<'a> {
         written_name: impl Fn(&str) -> String,
         taken: &[&str],
     ) -> Result<(), WriteError> {
+        self.check_faces()?;
+        self.check_fields(written_name, taken)
+    }
+
+    fn check_faces(&self) -> Result<(), WriteError> {
         for (face, corners) in self.faces.iter().enumerate() {
             for &vertex in corners {
                 // Formats and readers with signed 32-bit indices are common.
@@ -168,6 +200,14 @@ impl<'a> MeshWithFields<'a> {
                 });
             }
         }
+        Ok(())
+    }
+
+    fn check_fields(
+        &self,
+        written_name: impl Fn(&str) -> String,
+        taken: &[&str],
+    ) -> Result<(), WriteError> {
         for (fields, expected, what) in [
             (self.vertex_fields, self.positions.len(), "vertices"),
             (self.face_fields, self.faces.len(), "faces"),

@@ -12,12 +12,7 @@ use super::{MeshWithFields, WriteError, as_word, unit_comment, write_file};
 /// # Errors
 /// A face that uses a vertex that does not exist.
 pub fn obj_bytes(mesh: &MeshWithFields) -> Result<Vec<u8>, WriteError> {
-    let without_fields = MeshWithFields {
-        vertex_fields: &[],
-        face_fields: &[],
-        ..*mesh
-    };
-    without_fields.check(str::to_string, &[])?;
+    mesh.check_faces()?;
     let mut text = format!("# {}\n", unit_comment(mesh.up_axis));
     let written = "writing to a string cannot fail";
     for x in mesh.positions {

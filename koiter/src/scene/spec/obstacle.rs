@@ -36,6 +36,9 @@ pub struct ObstacleSpec {
     /// Shapes that `mesh` takes one after the other, linear in time from each to the next.
     #[serde(default)]
     pub deform: Vec<DeformSpec>,
+    /// In place of `deform`: positions of the vertices of `mesh` over time, from a file.
+    #[serde(default)]
+    pub animation: Option<AnimationSpec>,
     /// Turned by this first.
     #[serde(default)]
     pub rotate: Option<RotationSpec>,
@@ -58,4 +61,19 @@ pub struct DeformSpec {
     pub time: f64,
     /// The shape, of the same triangles in the same order.
     pub mesh: MeshSpec,
+}
+
+/// `animation` of an obstacle that is a mesh: where its vertices are over time, linear between frames, still before the first
+/// and after the last. They are placed as `mesh` is.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AnimationSpec {
+    /// PC2 point cache, or NPZ file with `positions` (frames, vertices, 3) and `times` [s]; relative to the scene's folder.
+    pub file: String,
+    /// Frames a second; without, the file must say times.
+    #[serde(default)]
+    pub fps: Option<f64>,
+    /// Added to the times of the file [s].
+    #[serde(default)]
+    pub start: f64,
 }

@@ -49,7 +49,7 @@ pub fn glb_bytes(
     assert!(!frames.is_empty(), "a GLB file has at least one frame");
     let first = read(result, frames[0])?;
     if frames.len() > 1 && first.topology.is_some() {
-        return Err(WriteError::ChangingFaces);
+        return Err(WriteError::ChangingFaces { format: "GLB" });
     }
     let parts = result.parts_in(&first);
     assert_eq!(look.part_colors.len(), parts.len(), "one colour a part");

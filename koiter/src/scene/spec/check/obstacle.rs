@@ -44,6 +44,7 @@ pub(super) fn check_obstacle(path: &str, obstacle: &ObstacleSpec) -> Checked {
         check_mesh(&at("mesh"), mesh)?;
     }
     check_deform(&at("deform"), obstacle)?;
+    check_animation(&at("animation"), obstacle)?;
     if let Some(rotate) = &obstacle.rotate {
         check_rotation(&at("rotate"), rotate)?;
     }
@@ -77,4 +78,19 @@ fn check_deform(path: &str, obstacle: &ObstacleSpec) -> Checked {
         before = shape.time;
     }
     Ok(())
+}
+
+fn check_animation(path: &str, obstacle: &ObstacleSpec) -> Checked {
+    let Some(animation) = &obstacle.animation else {
+        return Ok(());
+    };
+    let conflict = |message: &str| error(Kind::Conflict, path, message.to_owned());
+    if obstacle.mesh.is_none() {
+        return Err(conflict("only an obstacle with the key 'mesh' is animated"));
+    }
+    if !obstacle.deform.is_empty() {
+        let both = conflict("the shapes over time are given twice, by 'animation' and by 'deform'");
+        return Err(both.with_help("keep one of them"));
+    }
+    optional_positive(&format!("{path}.fps"), animation.fps, "frames a second")
 }
