@@ -189,8 +189,8 @@ fn read_surface(path: &Path) -> Result<Surface, Failure> {
         unreferenced: UnreferencedPolicy::Refuse,
         ..SurfaceOptions::default()
     };
-    let mesh = read_mesh(path).map_err(Failure::input)?;
-    let surface = mesh.into_surface(options).map_err(Failure::input)?;
+    let mesh = read_mesh(path).map_err(Failure::mesh)?;
+    let surface = mesh.into_surface(options).map_err(Failure::mesh)?;
     let largest = (surface.positions.iter()).fold(0.0, |m: f64, x| m.max(x.amax()));
     let shortest = surface.shortest_edge_length();
     if largest > LARGEST_LENGTH || shortest < 1.0 / LARGEST_LENGTH {

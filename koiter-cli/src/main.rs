@@ -10,6 +10,7 @@ mod catalogue;
 mod check;
 mod debug_mesh;
 mod energy;
+mod explain;
 mod export;
 mod failure;
 mod interrupt;
@@ -52,6 +53,7 @@ fn main() -> ExitCode {
         Verb::Materials(arguments) => catalogue::materials(&arguments),
         Verb::Models(arguments) => catalogue::models(&arguments),
         Verb::Schema => catalogue::schema(),
+        Verb::Explain(arguments) => explain::explain(&arguments),
         Verb::Completions(arguments) => manual::completions(&arguments),
         Verb::Man(arguments) => manual::man(&arguments),
         Verb::Energy(arguments) => energy::energy(&arguments),

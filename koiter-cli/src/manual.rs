@@ -49,7 +49,7 @@ fn write_page(folder: &Path, command: Command, name: &str) -> Result<(), Failure
     let path = folder.join(format!("{name}.1"));
     page(command)
         .and_then(|bytes| write_atomically(&path, &bytes))
-        .map_err(|error| Failure::run(format!("cannot write {}: {error}", path.display())))
+        .map_err(|error| Failure::writing(&path, &error))
 }
 
 /// The page as roff. The text after the help is set as it stands: examples are lines, not paragraphs.

@@ -138,5 +138,5 @@ fn write_shape(simulation: &Simulation, shape: &[f64], path: &Path) -> Result<()
         faces: &faces,
         ..MeshWithFields::default()
     };
-    write_ply(path, &mesh).map_err(Failure::run)
+    write_ply(path, &mesh).map_err(Failure::export)
 }

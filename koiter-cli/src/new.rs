@@ -36,7 +36,7 @@ pub(crate) fn new(arguments: &NewArguments) -> Result<(), Failure> {
             files[..index]
                 .iter()
                 .for_each(|(path, _)| drop(fs::remove_file(path)));
-            Failure::run(format!("cannot write {}: {error}", path.display()))
+            Failure::writing(path, &error)
         })?;
     }
     let made: Vec<String> = files

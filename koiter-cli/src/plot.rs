@@ -71,6 +71,5 @@ pub(crate) fn write(
         return image.write_png(path).map_err(Failure::run);
     }
     let text = chart.to_svg(width, height).map_err(Failure::input)?;
-    write_atomically(path, text.as_bytes())
-        .map_err(|error| Failure::run(format!("cannot write {}: {error}", path.display())))
+    write_atomically(path, text.as_bytes()).map_err(|error| Failure::writing(path, &error))
 }

@@ -21,7 +21,7 @@ use koiter::scene::model::Model;
 use koiter::scene::spec::MAX_STEPS;
 
 use crate::arguments::RunArguments;
-use crate::failure::Failure;
+use crate::failure::{Code, Failure};
 use crate::interrupt::Interrupt;
 use crate::pictures;
 use crate::scene_source::load;
@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
             let mut simulation = start(&loaded.scene.model, arguments.debug_mesh.as_deref())?;
             simulation
                 .restore(&checkpoint.snapshot)
-                .map_err(|error| Failure::input(error).with_help(beginning::BEGIN_AGAIN))?;
+                .map_err(|error| beginning::not_resumed(error).with_help(beginning::BEGIN_AGAIN))?;
             // A run that went further than it is now to go is not cut back.
             let end = match simulation.has_ended() {
                 true => simulation.step_count(),
@@ -125,16 +125,20 @@ fn judge(recorder: &Recorder<'_>, num_steps: usize) -> Result<(), Failure> {
             "interrupted after step {} of {num_steps}; the result up to there is whole",
             recorder.summary.steps
         );
-        return Err(Failure::run(message).with_help(beginning::how_to_go_on()));
+        return Err(Failure::run(message)
+            .with_code(Code::Interrupted)
+            .with_help(beginning::how_to_go_on()));
     }
     if recorder.unconverged > 0 {
         let message = format!(
             "{} of {} steps did not converge",
             recorder.unconverged, recorder.summary.steps
         );
-        let failure = Failure::run(message).with_help(
-            "the warning above says what to try; stats.jsonl has the diagnosis of each step",
-        );
+        let failure = Failure::run(message)
+            .with_code(Code::NotConverged)
+            .with_help(
+                "the warning above says what to try; stats.jsonl has the diagnosis of each step",
+            );
         return Err(tell_of_free_parts(failure, &recorder.scene.model));
     }
     Ok(())
@@ -204,7 +208,7 @@ fn advance(
             },
             Err(error) => {
                 recorder.note_error(&error);
-                return Err(Failure::run(error));
+                return Err(Failure::step(error));
             }
         };
         let stop = control.is_to_end();

@@ -7,7 +7,7 @@ mod workers;
 use std::path::{Path, PathBuf};
 
 use crate::arguments::SweepArguments;
-use crate::failure::Failure;
+use crate::failure::{Code, Failure};
 use crate::output::{quoted, say};
 use crate::pictures::grid;
 use crate::scene_source::load_silently;
@@ -74,6 +74,7 @@ fn finish(
             "{failed} of {} runs failed or were not begun",
             outcomes.len()
         ))
+        .with_code(Code::Sweep)
         .with_help(
             "what a run said is in the .log.txt beside its folder; the same command goes on with what is left",
         )),

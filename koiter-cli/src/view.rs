@@ -20,7 +20,7 @@ use std::process::{Command, Stdio};
 use serde_json::json;
 
 use crate::arguments::ViewArguments;
-use crate::failure::Failure;
+use crate::failure::{Code, Failure};
 use crate::output::say;
 use guard::Guard;
 pub(crate) use html::{html, html_frames};
@@ -36,12 +36,7 @@ pub(crate) fn view(arguments: &ViewArguments) -> Result<(), Failure> {
     let results = (arguments.shown.iter())
         .map(|path| Shown::open(path))
         .collect::<Result<Vec<_>, _>>()?;
-    let page = Page::bundled().map_err(|reason| {
-        Failure::run(format!(
-            "this program was built without the viewer: {reason}"
-        ))
-        .with_help(HOW_TO_BUNDLE)
-    })?;
+    let page = bundled_page()?;
     let port = arguments.port.unwrap_or(0);
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| {
         Failure::input(format!("cannot listen on port {port}: {error}"))
@@ -72,6 +67,7 @@ pub(crate) fn bundled_page() -> Result<Page, Failure> {
         Failure::run(format!(
             "this program was built without the viewer: {reason}"
         ))
+        .with_code(Code::Viewer)
         .with_help(HOW_TO_BUNDLE)
     })
 }

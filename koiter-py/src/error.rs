@@ -33,6 +33,7 @@ pub(crate) fn of_scene(error: &koiter::scene::SceneError) -> PyErr {
     if let Some(help) = &error.help {
         let _ = write!(text, "\n  help: {help}");
     }
+    let _ = write!(text, "\n  code: {}", error.kind.code());
     SceneError::new_err(text)
 }
 

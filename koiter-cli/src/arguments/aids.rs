@@ -110,6 +110,16 @@ pub(crate) enum Figure {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
+  koiter explain                       all codes, a line each
+  koiter explain start-touching        the code that an error began with")]
+pub(crate) struct ExplainArguments {
+    /// The code with which an error begins [default: all, a line each]
+    pub(crate) code: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
   koiter completions bash > ~/.local/share/bash-completion/completions/koiter
   koiter completions zsh > ~/.zfunc/_koiter
   koiter completions fish > ~/.config/fish/completions/koiter.fish")]

@@ -83,7 +83,7 @@ impl Run {
         })?
         .scene;
         let dt = scene.timeline.dt(1);
-        let mut simulation = Simulation::new(scene.model).map_err(Failure::input)?;
+        let mut simulation = Simulation::new(scene.model).map_err(Failure::start)?;
         let mut run = Self {
             faces: simulation.stats().faces,
             steps,
@@ -96,7 +96,7 @@ impl Run {
         };
         let start = Instant::now();
         for _ in 0..steps {
-            let report = simulation.step(dt).map_err(Failure::run)?;
+            let report = simulation.step(dt).map_err(Failure::step)?;
             run.iterations += report.newton_iterations;
             run.unconverged += usize::from(!report.converged);
             for (part, seconds) in report.seconds {

@@ -89,7 +89,7 @@ impl Run {
             };
             let clock = Instant::now();
             for _ in 0..options.steps {
-                let report = simulation.step(dt).map_err(Failure::run)?;
+                let report = simulation.step(dt).map_err(Failure::step)?;
                 run.forces += seconds(&report, "forces");
                 run.estimates += seconds(&report, "stable_step");
             }

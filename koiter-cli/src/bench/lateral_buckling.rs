@@ -248,7 +248,7 @@ impl Plate {
         })?
         .scene;
         Ok(Self {
-            simulation: Simulation::new(scene.model).map_err(Failure::input)?,
+            simulation: Simulation::new(scene.model).map_err(Failure::start)?,
             iterations: 0,
             unconverged: 0,
         })
@@ -257,7 +257,7 @@ impl Plate {
     /// The largest lateral displacement over L at equilibrium under `load`; in the scene Γ* is the time.
     fn equilibrium(&mut self, load: f64) -> Result<f64, Failure> {
         let dt = load - self.simulation.time();
-        let report = self.simulation.step(dt).map_err(Failure::run)?;
+        let report = self.simulation.step(dt).map_err(Failure::step)?;
         self.iterations += report.newton_iterations;
         self.unconverged += usize::from(!report.converged);
         let lateral = self.simulation.shell_positions(0).into_iter();

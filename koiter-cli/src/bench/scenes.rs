@@ -195,7 +195,7 @@ impl Task<'_> {
 
     fn run(&self) -> Result<Run, Failure> {
         let scene = self.scene()?;
-        let mut simulation = Simulation::new(scene.model).map_err(Failure::input)?;
+        let mut simulation = Simulation::new(scene.model).map_err(Failure::start)?;
         let mut run = Run {
             triangles: simulation.stats().faces,
             smallest_gap: f64::INFINITY,

@@ -7,7 +7,7 @@ use koiter::audit::{Audit, Body, Crossing, Enclosed, FrameAudit, Penetration, Re
 use koiter::io::result::{Frame, Part, PartKind, ResultReader};
 use serde::Serialize;
 
-use crate::failure::Failure;
+use crate::failure::{Code, Failure};
 use crate::output::say;
 
 /// Findings of a frame that are told one by one.
@@ -117,7 +117,7 @@ impl Report {
         let faults: Vec<&Row> = self.frames.iter().filter(|row| !row.is_clean()).collect();
         let Some(first) = faults.first() else {
             return match self.damaged.first() {
-                Some(message) => Err(Failure::run(message)),
+                Some(message) => Err(Failure::run(message).with_code(Code::Audit)),
                 None => Ok(()),
             };
         };
@@ -130,7 +130,8 @@ impl Report {
             faults.len(),
             self.frames.len(),
             first.frame
-        )))
+        ))
+        .with_code(Code::Audit))
     }
 
     fn print(&self) {

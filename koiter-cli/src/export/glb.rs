@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use koiter::io::result::{Frame, PartKind, ResultReader};
-use koiter::io::write::{GlbLook, WriteError, glb_frames, write_glb};
+use koiter::io::write::{GlbLook, glb_frames, write_glb};
 use koiter_render::Rgb;
 
 use crate::arguments::ExportArguments;
@@ -31,10 +31,7 @@ pub(super) fn export(
         part_colors: part_colors(reader),
         vertex_colors,
     };
-    write_glb(output, reader, &frames, &look).map_err(|error| match error {
-        WriteError::Io { .. } => Failure::run(error),
-        _ => Failure::input(error),
-    })
+    write_glb(output, reader, &frames, &look).map_err(Failure::export)
 }
 
 /// Shells in the order of the render's colours, obstacles in stone.

@@ -1,5 +1,6 @@
 //! Where a run begins: at the start, at a checkpoint, or nowhere because it is finished.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use koiter::io::Checkpoint;
@@ -9,7 +10,7 @@ use serde_json::Value;
 
 use super::recorder::writing;
 use crate::arguments::RunArguments;
-use crate::failure::Failure;
+use crate::failure::{Code, Failure};
 use crate::interrupt::Interrupt;
 use crate::output::{quoted, say, say_error};
 use crate::pictures;
@@ -60,12 +61,12 @@ pub(super) fn find(
             begin_without_checkpoint(folder, arguments.quiet)?;
             return Ok(Beginning::Start(Some(lock)));
         }
-        Err(error) => return Err(Failure::input(error).with_help(BEGIN_AGAIN)),
+        Err(error) => return Err(not_resumed(error).with_help(BEGIN_AGAIN)),
     };
     if let Some(reason) = difference(loaded, &checkpoint) {
         let path = folder.join("checkpoint.bin");
         let message = format!("cannot resume from {}: {reason}", path.display());
-        return Err(Failure::input(message).with_help(
+        return Err(not_resumed(message).with_help(
             "resume with the scene and the --set values of the interrupted run, or choose another folder with --out",
         ));
     }
@@ -74,6 +75,11 @@ pub(super) fn find(
         Some(summary) => Beginning::Finished(summary),
         None => Beginning::Checkpoint(Box::new(checkpoint), lock),
     })
+}
+
+/// A checkpoint that is not gone on with.
+pub(super) fn not_resumed(reason: impl Display) -> Failure {
+    Failure::input(reason).with_code(Code::Resume)
 }
 
 /// A run that was killed before its first checkpoint begins again, and says so; one that ended had a checkpoint, and its
@@ -87,7 +93,7 @@ fn begin_without_checkpoint(folder: &Path, quiet: bool) -> Result<(), Failure> {
     });
     if had_checkpoint {
         let message = format!("{shown} holds a result, but its checkpoint.bin is missing");
-        return Err(Failure::input(message).with_help(BEGIN_AGAIN));
+        return Err(not_resumed(message).with_help(BEGIN_AGAIN));
     }
     match reader.map_or(0, |reader| reader.len()) {
         0 if quiet => {}
@@ -112,11 +118,11 @@ fn refuse_to_replace(
     }
     let (folder, step) = (folder.display(), checkpoint.snapshot.state.step);
     Err(match difference(loaded, checkpoint) {
-        None => Failure::input(format!(
+        None => not_resumed(format!(
             "{folder} holds an interrupted run of this scene, saved after step {step}"
         ))
         .with_help("--resume goes on with it, --restart begins again and replaces it"),
-        Some(reason) => Failure::input(format!(
+        Some(reason) => not_resumed(format!(
             "{folder} holds an interrupted run, saved after step {step}, and not of this scene as it is: {reason}"
         ))
         .with_help("--resume with the scene and the --set values of that run goes on with it; --restart replaces it"),

@@ -11,7 +11,7 @@ use koiter::scene::{Scene, Simulation};
 use super::beginning::BEGIN_AGAIN;
 use super::record::{StatsLine, Summary};
 use super::start;
-use crate::failure::Failure;
+use crate::failure::{Code, Failure};
 use crate::probes::ProbeWriter;
 use crate::scene_source::LoadedScene;
 
@@ -217,9 +217,9 @@ impl<'a> Recorder<'a> {
 pub(super) fn writing(error: ResultError) -> Failure {
     match error {
         ResultError::NotEmpty { .. } | ResultError::InUse { .. } => {
-            Failure::input(error).with_help("choose another folder with --out")
+            Failure::result(error).with_help("choose another folder with --out")
         }
-        error => Failure::run(error),
+        error => Failure::run(&error).with_code(Code::of_result(&error)),
     }
 }
 
@@ -230,13 +230,13 @@ fn damaged(error: ResultError) -> Failure {
         ResultError::Io { ref source, .. }
             if matches!(source.kind(), ErrorKind::NotFound | ErrorKind::IsADirectory) =>
         {
-            Failure::input(error).with_help(BEGIN_AGAIN)
+            Failure::result(error).with_help(BEGIN_AGAIN)
         }
         ResultError::Io { .. } | ResultError::InUse { .. } => writing(error),
-        error => Failure::input(error).with_help(BEGIN_AGAIN),
+        error => Failure::result(error).with_help(BEGIN_AGAIN),
     }
 }
 
 fn cannot_write(path: &Path, error: std::io::Error) -> Failure {
-    Failure::run(format!("cannot write {}: {error}", path.display()))
+    Failure::writing(path, &error)
 }

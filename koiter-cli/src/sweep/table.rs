@@ -71,9 +71,8 @@ impl Table {
             ("table.json", self.json().to_string()),
         ] {
             let path = out.join(name);
-            write_atomically(&path, text.as_bytes()).map_err(|error| {
-                Failure::run(format!("cannot write {}: {error}", path.display()))
-            })?;
+            write_atomically(&path, text.as_bytes())
+                .map_err(|error| Failure::writing(&path, &error))?;
         }
         Ok(())
     }

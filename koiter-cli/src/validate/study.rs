@@ -186,7 +186,7 @@ pub(super) fn scene(case: &Case, model: BendingModel, cells: &[usize]) -> Result
 
 fn measure(case: &Case, model: BendingModel, cells: &[usize]) -> Result<Measured, Failure> {
     let scene = scene(case, model, cells)?;
-    let mut simulation = Simulation::new(scene.model.clone()).map_err(Failure::input)?;
+    let mut simulation = Simulation::new(scene.model.clone()).map_err(Failure::start)?;
     match case.question {
         Question::Vibration { skipped, .. } => {
             let count = skipped + case.quantities().len();
@@ -232,7 +232,7 @@ fn run(scene: &Scene, simulation: &mut Simulation) -> Result<Rows, Failure> {
     for step in 1..=scene.timeline.num_steps() {
         let report = simulation
             .step(scene.timeline.dt(step))
-            .map_err(Failure::run)?;
+            .map_err(Failure::step)?;
         if !report.converged {
             let reason = report.diagnosis.unwrap_or_default();
             return Err(Failure::run(format!(

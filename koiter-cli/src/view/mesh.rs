@@ -18,7 +18,7 @@ pub(super) struct Mesh {
 
 impl Mesh {
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
-        let raw = read_mesh(path).map_err(Failure::input)?;
+        let raw = read_mesh(path).map_err(Failure::mesh)?;
         let name = path
             .file_stem()
             .unwrap_or_default()

@@ -70,6 +70,38 @@ pub enum SceneErrorKind {
     TooLarge,
 }
 
+impl SceneErrorKind {
+    /// All there are.
+    pub const ALL: [Self; 10] = [
+        Self::Syntax,
+        Self::UnknownKey,
+        Self::MissingKey,
+        Self::WrongType,
+        Self::OutOfRange,
+        Self::UnknownName,
+        Self::Conflict,
+        Self::EmptySelection,
+        Self::Mesh,
+        Self::TooLarge,
+    ];
+
+    /// Its stable name, by which `koiter explain` knows it.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Syntax => "scene-syntax",
+            Self::UnknownKey => "scene-unknown-key",
+            Self::MissingKey => "scene-missing-key",
+            Self::WrongType => "scene-wrong-type",
+            Self::OutOfRange => "scene-out-of-range",
+            Self::UnknownName => "scene-unknown-name",
+            Self::Conflict => "scene-conflict",
+            Self::EmptySelection => "scene-empty-selection",
+            Self::Mesh => "scene-mesh",
+            Self::TooLarge => "scene-too-large",
+        }
+    }
+}
+
 /// A mistake in a scene: one sentence, its place, and what to do.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{message}")]

@@ -178,7 +178,7 @@ fn longest_step() -> Result<f64, Failure> {
     while high - low > 1e-7 {
         let middle = 0.5 * (low + high);
         let mut simulation =
-            Simulation::new(plate(0.0, false, 1e-9)?.model).map_err(Failure::input)?;
+            Simulation::new(plate(0.0, false, 1e-9)?.model).map_err(Failure::start)?;
         match simulation.step(middle) {
             Ok(_) => low = middle,
             Err(StepError::Unstable { .. }) => high = middle,
@@ -219,11 +219,11 @@ fn check_gain(gates: &mut Gates) -> Result<(), Failure> {
         overrides.extend((!more.is_empty()).then_some(more));
         let mut scene = shipped("beams", &overrides)?;
         keep(&mut scene.model, "flat_100")?;
-        let mut simulation = Simulation::new(scene.model).map_err(Failure::input)?;
+        let mut simulation = Simulation::new(scene.model).map_err(Failure::start)?;
         let start = simulation.total_energy();
         let (mut gain, mut kinetic) = (0.0f64, 0.0f64);
         for _ in 0..(0.66f64 / dt).round() as usize {
-            simulation.step(dt).map_err(Failure::run)?;
+            simulation.step(dt).map_err(Failure::step)?;
             let change = simulation.total_energy() - start;
             gain = gain.max(if more.is_empty() {
                 change.abs()

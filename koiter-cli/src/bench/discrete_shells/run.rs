@@ -68,7 +68,7 @@ pub(super) struct Trace {
 
 impl Trace {
     pub(super) fn new(model: Model) -> Result<Self, Failure> {
-        let simulation = Simulation::new(model).map_err(Failure::input)?;
+        let simulation = Simulation::new(model).map_err(Failure::start)?;
         let start = simulation.total_energy();
         Ok(Self {
             simulation,
@@ -81,7 +81,7 @@ impl Trace {
 
     /// Takes a step of a timeline; one that does not converge is an error.
     pub(super) fn step(&mut self, dt: f64) -> Result<StepReport, Failure> {
-        let report = self.simulation.step(dt).map_err(Failure::run)?;
+        let report = self.simulation.step(dt).map_err(Failure::step)?;
         if !report.converged {
             let step = self.simulation.step_count();
             return Err(Failure::run(format!("step {step} did not converge")));
