@@ -2,6 +2,7 @@
 
 mod aids;
 mod bezier;
+mod fitting;
 mod modes;
 mod scenes;
 mod studies;
@@ -15,6 +16,7 @@ pub(crate) use aids::{
 };
 
 pub(crate) use bezier::BezierArguments;
+pub(crate) use fitting::FitArguments;
 pub(crate) use modes::ModesArguments;
 pub(crate) use scenes::{ScenesArguments, Variation};
 pub(crate) use studies::{
@@ -91,6 +93,8 @@ and others) complete its keys and mark mistakes.")]
     Energy(EnergyArguments),
     /// Natural frequencies or buckling loads of a scene's structure, and their shapes.
     Modes(ModesArguments),
+    /// Finds values of a scene, such as moduli, from a measured curve.
+    Fit(FitArguments),
     /// Computes published shell problems and compares.
     Validate(ValidateArguments),
     /// Measures what things cost on this machine, and how models compare.

@@ -13,6 +13,7 @@ mod energy;
 mod explain;
 mod export;
 mod failure;
+mod fit;
 mod interrupt;
 mod logger;
 mod manual;
@@ -58,6 +59,7 @@ fn main() -> ExitCode {
         Verb::Man(arguments) => manual::man(&arguments),
         Verb::Energy(arguments) => energy::energy(&arguments),
         Verb::Modes(arguments) => modes::modes(&arguments),
+        Verb::Fit(arguments) => fit::fit(&arguments),
         Verb::Validate(arguments) => validate::validate(&arguments),
         Verb::Bench(arguments) => bench::bench(&arguments),
     };

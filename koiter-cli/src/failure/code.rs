@@ -39,6 +39,8 @@ pub(crate) enum Code {
     Audit,
     /// A sweep with runs that failed.
     Sweep,
+    /// A curve that does not determine what is fitted.
+    Fit,
     /// A program without the viewer's page.
     Viewer,
     /// Anything else that was tried and did not work.
@@ -47,7 +49,7 @@ pub(crate) enum Code {
 
 impl Code {
     /// All there are.
-    pub(crate) const ALL: [Self; 19] = [
+    pub(crate) const ALL: [Self; 20] = [
         Self::Argument,
         Self::MeshFile,
         Self::NotAResult,
@@ -65,6 +67,7 @@ impl Code {
         Self::Interrupted,
         Self::Audit,
         Self::Sweep,
+        Self::Fit,
         Self::Viewer,
         Self::Failed,
     ];
@@ -89,6 +92,7 @@ impl Code {
             Self::Interrupted => "interrupted",
             Self::Audit => "audit",
             Self::Sweep => "sweep",
+            Self::Fit => "fit",
             Self::Viewer => "viewer",
             Self::Failed => "failed",
         }
