@@ -4,32 +4,32 @@ mod account;
 mod beginning;
 mod control;
 mod progress;
-mod record;
-mod recorder;
+mod refusals;
 mod start;
+mod told;
 
-pub(crate) use start::{parts, start};
+pub(crate) use start::start;
 
 use crate::output::say;
 use std::path::{Path, PathBuf};
 
 use koiter::integrate::StepReport;
+use koiter::io::record::Recorder;
 use koiter::io::result::FolderLock;
-use koiter::scene::Scene;
-use koiter::scene::Simulation;
 use koiter::scene::model::Model;
 use koiter::scene::spec::MAX_STEPS;
+use koiter::scene::{Scene, Simulation, Timeline};
 
 use crate::arguments::RunArguments;
 use crate::failure::{Code, Failure};
 use crate::interrupt::Interrupt;
+use crate::memory;
 use crate::pictures;
 use crate::scene_source::load;
 use account::Account;
 use beginning::Beginning;
 use control::Control;
 use progress::Progress;
-use recorder::Recorder;
 
 /// Runs a scene.
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
@@ -50,8 +50,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         Beginning::Start(lock) => {
             let simulation = start(&loaded.scene.model, arguments.debug_mesh.as_deref())?;
             let lock = lock.map_or_else(|| FolderLock::create(&folder), Ok);
-            let lock = lock.map_err(recorder::writing)?;
-            let recorder = Recorder::create(lock, &loaded, &simulation, num_steps)?;
+            let lock = lock.map_err(refusals::writing)?;
+            let recorder =
+                Recorder::create(lock, &loaded.scene, &loaded.text, &simulation, num_steps)
+                    .map_err(refusals::writing)?;
             (simulation, recorder)
         }
         Beginning::Checkpoint(checkpoint, lock) => {
@@ -64,7 +66,15 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
                 true => simulation.step_count(),
                 false => num_steps.max(simulation.step_count()),
             };
-            let recorder = Recorder::resume(lock, &loaded, &simulation, end, &checkpoint.totals)?;
+            let recorder = Recorder::resume(
+                lock,
+                &loaded.scene,
+                &loaded.text,
+                &simulation,
+                end,
+                &checkpoint.totals,
+            )
+            .map_err(refusals::damaged)?;
             (simulation, recorder)
         }
     };
@@ -72,6 +82,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let control = Control::new(&folder, &interrupt, arguments.quiet);
     let mut progress = Progress::new(num_steps, simulation.step_count(), arguments.quiet);
     let end = advance(
+        &loaded.scene.timeline,
         simulation,
         num_steps,
         &mut recorder,
@@ -79,7 +90,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         &control,
     );
     progress.finish();
-    let summary_written = recorder.write_summary();
+    let summary_written = (recorder.write_summary(memory::peak_bytes())).map_err(refusals::writing);
     let is_told = !arguments.json && !arguments.quiet;
     if let Err(failure) = end.and(summary_written) {
         if is_told {
@@ -103,11 +114,11 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         let json = serde_json::to_string(&recorder.summary).map_err(Failure::run)?;
         say!("{json}");
     } else if is_told {
-        recorder.summary.print();
+        told::print(&recorder.summary);
         tell_account(&folder);
-        recorder.summary.print_files(&folder, &made);
+        told::print_files(&folder, &made);
     }
-    judge(&recorder, num_steps)
+    judge(&recorder, &loaded.scene.model, num_steps)
 }
 
 /// Says where the time went; figures that cannot be read back are no reason to fail.
@@ -119,7 +130,7 @@ fn tell_account(folder: &Path) {
 }
 
 /// Whether the run did what it was asked.
-fn judge(recorder: &Recorder<'_>, num_steps: usize) -> Result<(), Failure> {
+fn judge(recorder: &Recorder, model: &Model, num_steps: usize) -> Result<(), Failure> {
     if recorder.summary.interrupted {
         let message = format!(
             "interrupted after step {} of {num_steps}; the result up to there is whole",
@@ -129,17 +140,18 @@ fn judge(recorder: &Recorder<'_>, num_steps: usize) -> Result<(), Failure> {
             .with_code(Code::Interrupted)
             .with_help(beginning::how_to_go_on()));
     }
-    if recorder.unconverged > 0 {
+    if recorder.num_unconverged() > 0 {
         let message = format!(
             "{} of {} steps did not converge",
-            recorder.unconverged, recorder.summary.steps
+            recorder.num_unconverged(),
+            recorder.summary.steps
         );
         let failure = Failure::run(message)
             .with_code(Code::NotConverged)
             .with_help(
                 "the warning above says what to try; stats.jsonl has the diagnosis of each step",
             );
-        return Err(tell_of_free_parts(failure, &recorder.scene.model));
+        return Err(tell_of_free_parts(failure, model));
     }
     Ok(())
 }
@@ -188,9 +200,10 @@ fn num_steps(scene: &Scene, until: Option<f64>) -> Result<usize, Failure> {
 }
 
 fn advance(
+    timeline: &Timeline,
     simulation: Simulation,
     num_steps: usize,
-    recorder: &mut Recorder<'_>,
+    recorder: &mut Recorder,
     progress: &mut Progress,
     control: &Control<'_>,
 ) -> Result<(), Failure> {
@@ -200,7 +213,6 @@ fn advance(
             break;
         }
         control.wait_while_paused();
-        let timeline = &recorder.scene.timeline;
         let report = match simulation.step(timeline.dt(step)) {
             Ok(report) => StepReport {
                 time: timeline.time(step),
@@ -217,7 +229,7 @@ fn advance(
             recorder.summary.planned_steps = step;
         }
         let ended = step == recorder.summary.planned_steps;
-        recorder.record(&simulation, &report, stop || ended)?;
+        (recorder.record(&simulation, &report, stop || ended)).map_err(refusals::writing)?;
         progress.show(&report);
         if stop {
             recorder.summary.interrupted = !ended;

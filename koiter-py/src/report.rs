@@ -1,6 +1,7 @@
 //! What a step tells.
 
 use std::collections::HashMap;
+use std::time::Duration;
 
 use koiter::integrate::StepReport;
 use pyo3::prelude::*;
@@ -9,12 +10,14 @@ use pyo3::prelude::*;
 /// and `seconds` by name, `diagnosis` where it did not converge.
 #[pyclass(frozen, module = "koiter")]
 pub(crate) struct Step {
-    report: StepReport,
+    pub(crate) report: StepReport,
+    wall: Duration,
 }
 
-impl From<StepReport> for Step {
-    fn from(report: StepReport) -> Self {
-        Self { report }
+impl Step {
+    /// A step that took so much wall time.
+    pub(crate) fn new(report: StepReport, wall: Duration) -> Self {
+        Self { report, wall }
     }
 }
 
@@ -75,6 +78,12 @@ impl Step {
     #[getter]
     fn seconds(&self) -> HashMap<&'static str, f64> {
         self.report.seconds.iter().copied().collect()
+    }
+
+    /// Wall time that the step took in the compiled half [s].
+    #[getter]
+    fn wall_seconds(&self) -> f64 {
+        self.wall.as_secs_f64()
     }
 
     /// Why it did not converge, and where; `None` if it did.

@@ -2,8 +2,12 @@
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
+use koiter::integrate::StepReport;
 use koiter::io::read;
+use koiter::io::record::Recorder;
+use koiter::io::result::FolderLock;
 use koiter::mesh::SurfaceOptions;
 use koiter::scene::{Probe, Scene, SceneFile, Warning};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
@@ -24,11 +28,22 @@ type NewMesh<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>);
 pub(crate) struct Simulation {
     inner: koiter::scene::Simulation,
     scene: Scene,
+    /// The scene as it runs, overrides included.
+    scene_text: String,
+    /// Where a run is being written.
+    recorder: Option<Recorder>,
 }
 
-fn build(text: &str, name: &str, overrides: &[String], meshes: &MemoryMeshes) -> PyResult<Scene> {
+/// The scene, and its text with the overrides.
+fn build(
+    text: &str,
+    name: &str,
+    overrides: &[String],
+    meshes: &MemoryMeshes,
+) -> PyResult<(Scene, String)> {
     let file = SceneFile::parse(name, text, overrides).map_err(|error| of_scene(&error))?;
-    Scene::build(&file, meshes).map_err(|error| of_scene(&error))
+    let scene = Scene::build(&file, meshes).map_err(|error| of_scene(&error))?;
+    Ok((scene, file.document.to_toml()))
 }
 
 impl Simulation {
@@ -42,6 +57,10 @@ impl Simulation {
             ))
         })
     }
+}
+
+fn not_recording() -> PyErr {
+    of_input("this simulation is not being written; begin_recording comes first")
 }
 
 fn warning_text(warning: &Warning) -> String {
@@ -72,26 +91,76 @@ impl Simulation {
             .collect::<PyResult<_>>()?;
         let meshes = MemoryMeshes { arrays, folder };
         py.detach(|| {
-            let scene = build(text, name, &overrides, &meshes)?;
+            let (scene, scene_text) = build(text, name, &overrides, &meshes)?;
             let inner = koiter::scene::Simulation::new(scene.model.clone()).map_err(of_input)?;
-            Ok(Self { inner, scene })
+            Ok(Self {
+                inner,
+                scene,
+                scene_text,
+                recorder: None,
+            })
         })
     }
 
     /// Takes a step of `dt` [s]; without it, of the scene's own length.
     #[pyo3(signature = (dt=None))]
     fn step(&mut self, py: Python<'_>, dt: Option<f64>) -> PyResult<Step> {
-        let next = self.inner.step_count() + 1;
-        let dt = dt.unwrap_or_else(|| self.scene.timeline.dt(next));
-        if !(dt.is_finite() && dt > 0.0) {
+        let (next, timeline) = (self.inner.step_count() + 1, &self.scene.timeline);
+        let length = dt.unwrap_or_else(|| timeline.dt(next));
+        if !(length.is_finite() && length > 0.0) {
             return Err(of_input(format!(
-                "dt must be larger than 0 s, but it is {dt}"
+                "dt must be larger than 0 s, but it is {length}"
             )));
         }
+        let start = Instant::now();
         // Other threads of Python go on meanwhile; Ctrl-C is seen when the step is over.
-        let report = py.detach(|| self.inner.step(dt)).map_err(of_run)?;
+        let report = py.detach(|| self.inner.step(length)).map_err(|error| {
+            if let Some(recorder) = &mut self.recorder {
+                recorder.note_error(&error);
+            }
+            of_run(error)
+        })?;
+        let report = StepReport {
+            // A sum of steps rounds otherwise than the time that the scene means.
+            time: dt.map_or_else(|| timeline.time(next), |_| report.time),
+            ..report
+        };
+        let step = Step::new(report, start.elapsed());
         py.check_signals()?;
-        Ok(report.into())
+        Ok(step)
+    }
+
+    /// Whether there is nothing left to do before the last step: the end of a path of equilibria.
+    #[getter]
+    fn has_ended(&self) -> bool {
+        self.inner.has_ended()
+    }
+
+    /// Begins to write a result folder, for a run of so many steps in all.
+    fn begin_recording(&mut self, folder: PathBuf, num_steps: usize) -> PyResult<()> {
+        if self.recorder.is_some() {
+            return Err(of_input("this simulation is being written already"));
+        }
+        let (scene, text, simulation) = (&self.scene, &self.scene_text, &self.inner);
+        let begun = FolderLock::create(&folder)
+            .and_then(|lock| Recorder::create(lock, scene, text, simulation, num_steps));
+        self.recorder = Some(begun.map_err(of_input)?);
+        Ok(())
+    }
+
+    /// Writes a step that was just taken; the last with its frame and a checkpoint.
+    fn record(&mut self, step: &Step, is_last: bool) -> PyResult<()> {
+        let recorder = self.recorder.as_mut().ok_or_else(not_recording)?;
+        (recorder.record(&self.inner, &step.report, is_last)).map_err(of_run)
+    }
+
+    /// Writes the summary and ends writing; `interrupted`: steps were left out.
+    fn end_recording(&mut self, interrupted: bool) -> PyResult<()> {
+        let mut recorder = self.recorder.take().ok_or_else(not_recording)?;
+        if interrupted {
+            recorder.stop(&self.inner).map_err(of_run)?;
+        }
+        recorder.write_summary(None).map_err(of_run)
     }
 
     /// Time [s].
@@ -272,7 +341,7 @@ pub(crate) fn generate_mesh<'py>(py: Python<'py>, text: &str) -> PyResult<NewMes
         arrays: HashMap::new(),
         folder: PathBuf::new(),
     };
-    let scene = build(text, "<mesh>", &[], &meshes)?;
+    let (scene, _) = build(text, "<mesh>", &[], &meshes)?;
     let surface = &scene.model.shells[0].surface;
     Ok((
         from_points(py, &surface.positions),

@@ -19,8 +19,8 @@ use super::table::{Cell, Table};
 use crate::arguments::{SceneArguments, ScenesArguments, Variation, bending_models};
 use crate::check::bodies;
 use crate::failure::Failure;
-use crate::run::parts;
 use crate::scene_source::load_silently;
+use koiter::io::record::parts_and_faces;
 
 /// Parts of a step that are contact.
 const CONTACT_PARTS: [&str; 3] = ["contact", "collision_detection", "audit"];
@@ -233,7 +233,7 @@ fn variation_name(variation: Variation) -> &'static str {
 
 /// What tests the frames of a simulation, and the triangles of all that is shown.
 fn audit(simulation: &Simulation) -> (Audit, usize) {
-    let (parts, faces) = parts(simulation);
+    let (parts, faces) = parts_and_faces(simulation);
     let positions = simulation.display_positions();
     let audit = Audit::new(bodies(&parts), &faces, &simulation.rest_faces(), &positions);
     (audit, faces.len())

@@ -8,7 +8,7 @@ use koiter::io::result::{FolderLock, ResultReader};
 use koiter::scene::{Difference, Document, KEYS_OF_NO_STEP};
 use serde_json::Value;
 
-use super::recorder::writing;
+use super::refusals::writing;
 use crate::arguments::RunArguments;
 use crate::failure::{Code, Failure};
 use crate::interrupt::Interrupt;

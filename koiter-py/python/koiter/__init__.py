@@ -21,8 +21,10 @@ from .picture import Picture
 from .result import Result
 from .scene import Scene
 from .simulation import Simulation
+from .viewer import Page, show
 
 __all__ = [
+    "Page",
     "Picture",
     "Result",
     "RunError",
@@ -35,4 +37,5 @@ __all__ = [
     "energy",
     "materials",
     "mesh",
+    "show",
 ]

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from . import toml
+from .result import Result
 from .simulation import Simulation
 
 Arrays = tuple[Any, Any]
 """Vertices of shape (n, 3) [m] and faces of shape (m, 3)."""
 
-_LISTS = ("phase", "shell", "obstacle", "constraint", "symmetry", "load", "process", "energy", "probe")
+_LISTS = (
+    "phase", "shell", "double_layer", "obstacle", "constraint", "symmetry", "load", "heat_source", "process", "energy", "probe",
+)  # fmt: skip
 
 
 def arrays(mesh: Arrays) -> tuple[np.ndarray, np.ndarray]:
@@ -83,6 +86,14 @@ class Scene:
         """Adds a ``[[probe]]``; ``simulation.probes`` has its values."""
         self.add("probe", name, quantity=quantity, **keys)
 
+    def add_energy(self, name: str, density: str, **keys: Any) -> None:
+        """Adds an ``[[energy]]``: a density as a text of the quantities of vertices, edges, hinges, faces or the whole shell.
+
+        ``scene.add_energy("balloon", "-p * volume", shell="ball", on="shell", parameters={"p": 100.0})``; derivatives follow by
+        themselves.
+        """
+        self.add("energy", name, density=density, **keys)
+
     def _mesh(self, name: str, mesh: Mapping[str, Any] | Arrays) -> dict[str, Any]:
         if isinstance(mesh, Mapping):
             return dict(mesh)
@@ -98,3 +109,20 @@ class Scene:
         return Simulation(
             self.text(), name="<scene>", overrides=list(overrides), meshes=self._meshes, folder=self._folder
         )
+
+    def run(
+        self,
+        out: str | os.PathLike[str],
+        *,
+        until: float | None = None,
+        overrides: Sequence[str] = (),
+        callback: Callable[[Simulation], Any] | None = None,
+    ) -> Result:
+        """Runs the scene to its end, or up to a time [s], into a result folder as ``koiter run`` writes it, and opens that.
+
+        ``callback`` and ``overrides`` as in :meth:`start` and :meth:`koiter.Simulation.run`. Steps that did not converge make no
+        exception: ``result.summary["converged"]`` tells.
+        """
+        for _ in self.start(overrides).run(until, callback, out):
+            pass
+        return Result(out)

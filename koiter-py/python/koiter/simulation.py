@@ -26,18 +26,46 @@ class Simulation(_koiter.Simulation):
         return cls(path.read_text(encoding="utf-8"), name=str(path), overrides=list(overrides), folder=path.parent)
 
     def run(
-        self, until: float | None = None, callback: Callable[[Simulation], Any] | None = None
+        self,
+        until: float | None = None,
+        callback: Callable[[Simulation], Any] | None = None,
+        out: str | os.PathLike[str] | None = None,
     ) -> Iterator[_koiter.Step]:
         """Steps to the scene's end, or up to a time [s], one a turn of the loop.
 
         ``callback`` is called after each step with the simulation, which it may read and change; if it returns ``False`` the run
-        ends there.
+        ends there. ``out`` is a folder for the result, as ``koiter run`` writes it: :class:`koiter.Result` reads it, also while the
+        run goes on. It begins with the present state; what an earlier result there held is replaced.
         """
-        # Times are sums of steps: a share of a step decides no step more.
-        while self.step_count < self.num_steps if until is None else self.time < until * (1 - 1e-9):
+        if out is None:
+            yield from self._steps(until, callback)
+            return
+        # Where `until` says the end, how many steps it takes is known when they are taken.
+        self.begin_recording(Path(out), self.num_steps)
+        ended = False
+        try:
+            for step in self._steps(until, None):
+                ended = not self._goes_on(until)
+                self.record(step, ended)
+                yield step
+                if callback is not None and callback(self) is False:
+                    return
+        finally:
+            self.end_recording(not ended)
+
+    def _steps(
+        self, until: float | None, callback: Callable[[Simulation], Any] | None
+    ) -> Iterator[_koiter.Step]:
+        while self._goes_on(until):
             yield self.step()
             if callback is not None and callback(self) is False:
                 return
+
+    def _goes_on(self, until: float | None) -> bool:
+        if self.has_ended:
+            return False
+        # Times are sums of steps: a share of a step decides no step more.
+        return self.step_count < self.num_steps if until is None else self.time < until * (1 - 1e-9)
 
     def hessian(self) -> scipy.sparse.csc_array:
         """Hessian of the elastic energies by all unknowns, in the order of :meth:`gradient`; needs SciPy."""

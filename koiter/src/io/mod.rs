@@ -8,6 +8,7 @@ mod bounded_read;
 mod bytes;
 mod checksum;
 pub mod read;
+pub mod record;
 pub mod result;
 pub mod write;
 
