@@ -116,7 +116,8 @@ def name_pages(source):
             path, anchor = match.group(1), match.group(2) or ""
             return f"]({path.rstrip('/')}/README.md{anchor})" if (page.parent / path / "README.md").exists() else match.group(0)
 
-        text = page.read_text(encoding="utf-8")
+        # The table of contents is on every page of a book.
+        text = page.read_text(encoding="utf-8").replace("](docs/SUMMARY.md)", "](docs/first-five-minutes.md)")
         page.write_text(re.sub(r"\]\(([^)#\s:]+)(#[^)\s]*)?\)", named, text), encoding="utf-8")
 
 

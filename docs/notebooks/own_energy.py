@@ -13,7 +13,7 @@ def balloon(pressure):
     rubber = {"young": 1e6, "poisson": 0.4, "density": 1000.0}
     scene.add_shell("ball", {"icosphere": {"radius": 0.1, "subdivisions": 2}}, rubber, thickness=1e-3, rest="mesh")
     scene.add_constraint("held", shell="ball", select={"vertices": [0, 1, 2]})
-    scene.add_energy("air", "-p * volume", shell="ball", on="shell", parameters={"p": pressure})
+    scene.add_energy("air", shell="ball", on="shell", energy="-p * volume", parameters={"p": pressure})
     return scene
 
 

@@ -76,9 +76,9 @@ fn measure(folder: &Path, noise: f64) {
     let (heading, rows) = probes.split_once('\n').unwrap();
     let column = heading
         .split(',')
-        .position(|name| name == "tip_z")
+        .position(|name| name == "tip.z")
         .expect(heading);
-    let mut curve = "time,tip_z\n".to_owned();
+    let mut curve = "time,tip.z\n".to_owned();
     for (number, row) in rows.lines().enumerate().skip(1) {
         let values: Vec<f64> = row.split(',').map(|word| word.parse().unwrap()).collect();
         let error = noise * [1.0, -1.0, -1.0, 1.0][number % 4];
@@ -168,10 +168,10 @@ fn what_cannot_be_fitted_is_told() {
         assert_eq!(output.status.code(), Some(2), "{more:?}: {text}");
         assert!(text.contains(said), "{more:?}: {text}");
     }
-    std::fs::write(folder.path().join("curve.csv"), "time,tpi_z\n1,2\n").unwrap();
+    std::fs::write(folder.path().join("curve.csv"), "time,tpi.z\n1,2\n").unwrap();
     let text = errors(&fit(folder.path(), &["--vary", young]));
-    assert!(text.contains("did you mean 'tip_z'?"), "{text}");
-    std::fs::write(folder.path().join("curve.csv"), "time,tip_z\n1,x\n").unwrap();
+    assert!(text.contains("did you mean 'tip.z'?"), "{text}");
+    std::fs::write(folder.path().join("curve.csv"), "time,tip.z\n1,x\n").unwrap();
     let text = errors(&fit(folder.path(), &["--vary", young]));
     assert!(text.contains("line 2 is not 2 finite numbers"), "{text}");
 }

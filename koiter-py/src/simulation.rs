@@ -181,6 +181,12 @@ impl Simulation {
         self.scene.timeline.num_steps()
     }
 
+    /// The scene as it runs, overrides included, as a scene file.
+    #[getter]
+    fn scene_text(&self) -> &str {
+        &self.scene_text
+    }
+
     /// Names of the shells.
     #[getter]
     fn shells(&self) -> Vec<&str> {

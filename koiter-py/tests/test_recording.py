@@ -69,10 +69,10 @@ def test_only_one_writes_to_a_folder_and_other_folders_are_left_alone(hanging, t
 
 def test_an_energy_as_a_text_acts(hanging, tmp_path):
     free = hanging.run(tmp_path)[-1].positions
-    hanging.add_energy("updraught", "-lift * z", shell="cloth", on="vertex", parameters={"lift": 1e-3})
+    hanging.add_energy("updraught", shell="cloth", on="vertex", density="-lift * z", parameters={"lift": 1.0})
     lifted = hanging.run(tmp_path)[-1].positions
     assert np.mean(lifted[:, 2] - free[:, 2]) > 1e-3
-    hanging.add_energy("wrong", "z +", shell="cloth", on="vertex")
+    hanging.add_energy("wrong", shell="cloth", on="vertex", density="z +")
     with pytest.raises(koiter.SceneError, match="energy.wrong.density"):
         hanging.start()
 

@@ -16,7 +16,7 @@ Examples:
 
 CSV is a line of headings and a line of numbers a measurement: time and columns of the scene's probes, as probes.csv has
 them (a load that grows over time makes a load-deflection curve of it),
-  time,tip_z
+  time,tip.z
   0.5,-0.0812
   1.0,-0.1400
 or mode and frequency [Hz], for natural frequencies:

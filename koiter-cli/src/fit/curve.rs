@@ -107,12 +107,12 @@ mod tests {
 
     #[test]
     fn curves_have_headings_and_finite_numbers() {
-        let curve = Curve::parse("# a test\ntime, tip_z\n0.5, -1e-2\n\n1.0,-2e-2\n").unwrap();
+        let curve = Curve::parse("# a test\ntime, tip.z\n0.5, -1e-2\n\n1.0,-2e-2\n").unwrap();
         assert_eq!(
             (curve.kind, &curve.places[..]),
             (CurveKind::OverTime, &[0.5, 1.0][..])
         );
-        assert_eq!(curve.columns, [("tip_z".to_owned(), vec![-1e-2, -2e-2])]);
+        assert_eq!(curve.columns, [("tip.z".to_owned(), vec![-1e-2, -2e-2])]);
         assert_eq!(curve.scales(), [2e-2]);
         let modes = Curve::parse("mode,frequency\n1,3.5\n2,22").unwrap();
         assert_eq!((modes.kind, modes.len()), (CurveKind::Frequencies, 2));

@@ -17,6 +17,7 @@ Lengths are in metres, masses in kilograms, times in seconds; z is up.
 from . import mesh
 from ._koiter import RunError, SceneError, Step, __version__, bending_models, materials
 from .energy import energy
+from .families import sweep
 from .picture import Picture
 from .result import Result
 from .scene import Scene
@@ -38,4 +39,5 @@ __all__ = [
     "materials",
     "mesh",
     "show",
+    "sweep",
 ]

@@ -6,6 +6,7 @@ from typing import Any, final
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import disjoint_base
 
 __all__ = [
     "Frame",
@@ -85,6 +86,7 @@ class Shape:
     @property
     def directors(self) -> _Floats: ...
 
+@disjoint_base
 class Simulation:
     def __new__(
         cls,
@@ -107,6 +109,8 @@ class Simulation:
     def step_count(self) -> int: ...
     @property
     def num_steps(self) -> int: ...
+    @property
+    def scene_text(self) -> str: ...
     @property
     def shells(self) -> list[str]: ...
     @property
@@ -139,10 +143,11 @@ class Frame:
     @property
     def vertex_fields(self) -> dict[str, NDArray[np.float32]]: ...
 
+@disjoint_base
 class Result:
     def __new__(cls, path: _Path) -> Result: ...
     def __len__(self) -> int: ...
-    def __getitem__(self, frame: int) -> Frame: ...
+    def __getitem__(self, frame: int, /) -> Frame: ...
     @property
     def path(self) -> os.PathLike[str]: ...
     @property

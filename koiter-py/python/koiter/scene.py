@@ -86,13 +86,14 @@ class Scene:
         """Adds a ``[[probe]]``; ``simulation.probes`` has its values."""
         self.add("probe", name, quantity=quantity, **keys)
 
-    def add_energy(self, name: str, density: str, **keys: Any) -> None:
-        """Adds an ``[[energy]]``: a density as a text of the quantities of vertices, edges, hinges, faces or the whole shell.
+    def add_energy(self, name: str, *, shell: str, on: str, **keys: Any) -> None:
+        """Adds an ``[[energy]]``: a text of the quantities of what it is ``on``, a vertex, edge, hinge, face or the whole shell.
 
-        ``scene.add_energy("balloon", "-p * volume", shell="ball", on="shell", parameters={"p": 100.0})``; derivatives follow by
-        themselves.
+        The text is a ``density`` by rest area, an ``energy`` of each, a ``dissipation`` or a ``dissipation_density``, its numbers are
+        ``parameters``: ``scene.add_energy("air", shell="ball", on="shell", energy="-p * volume", parameters={"p": 100.0})``.
+        Derivatives follow by themselves.
         """
-        self.add("energy", name, density=density, **keys)
+        self.add("energy", name, shell=shell, on=on, **keys)
 
     def _mesh(self, name: str, mesh: Mapping[str, Any] | Arrays) -> dict[str, Any]:
         if isinstance(mesh, Mapping):
