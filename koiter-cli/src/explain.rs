@@ -13,9 +13,13 @@ const PAGE: &str = include_str!("../../docs/errors.md");
 pub(crate) fn explain(arguments: &ExplainArguments) -> Result<(), Failure> {
     let Some(asked) = &arguments.code else {
         for code in codes() {
-            let text = section(code).unwrap_or_default();
-            let sentence = text.split_terminator([':', '.']).next().unwrap_or_default();
-            say!("{code:<22} {}", sentence.trim().replace('\n', " "));
+            let text = section(code).unwrap_or_default().replace('\n', " ");
+            // Up to the end of a clause, not to the point in a file's name.
+            let ends = [". ", ": ", "; "]
+                .into_iter()
+                .filter_map(|end| text.find(end));
+            let end = ends.min().unwrap_or(text.len());
+            say!("{code:<22} {}", &text[..end]);
         }
         return Ok(());
     };
