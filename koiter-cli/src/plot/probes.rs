@@ -7,11 +7,12 @@ use koiter::scene::spec::ProbeQuantity;
 use koiter_render::{Panel, Series, Style};
 
 /// Quantities in the order of the panels, with names and units.
-const QUANTITIES: [(ProbeQuantity, &str, &str); 8] = [
+const QUANTITIES: [(ProbeQuantity, &str, &str); 9] = [
     (ProbeQuantity::Displacement, "displacement", "m"),
     (ProbeQuantity::Position, "position", "m"),
     (ProbeQuantity::Highest, "highest point", "m"),
     (ProbeQuantity::Lowest, "lowest point", "m"),
+    (ProbeQuantity::Distortion, "distortion", "m"),
     (ProbeQuantity::Velocity, "velocity", "m/s"),
     (ProbeQuantity::Reaction, "force on a constraint", "N"),
     (ProbeQuantity::Energy, "energy", "J"),

@@ -14,6 +14,7 @@ mod dual;
 mod jet;
 mod log_barrier;
 pub mod over_numbers;
+mod rigid_fit;
 mod wing;
 
 pub use closest::{
@@ -24,4 +25,5 @@ pub use crossing::segment_meets_triangle;
 pub use dual::Dual;
 pub use jet::{Jet, Real};
 pub use log_barrier::{log_barrier, log_barrier_slope_quotient};
+pub use rigid_fit::rigid_misfit;
 pub use wing::{Wing, WingFunctional, hinge_angle};

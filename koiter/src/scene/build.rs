@@ -18,7 +18,7 @@ use super::model::{
 };
 use super::phases::Timeline;
 use super::placement::{MeshSource, ShapeError, move_point, move_to, place, turn};
-use super::probe::{Probe, ProbeTarget, mean};
+use super::probe::{Probe, ProbeTarget};
 use super::selection::{SelectionError, select};
 use super::spec::{
     MeshSpec, ObstacleSpec, OutputSpec, ProbeQuantity, ProbeSpec, RestSpec, SceneFile, SceneSpec,
@@ -344,7 +344,8 @@ impl Builder<'_> {
                         .into_iter()
                         .map(|vertex| vertex.0 as usize)
                         .collect();
-                let start = mean(&model.shells[shell].surface.positions, &vertices);
+                let positions = &model.shells[shell].surface.positions;
+                let start = vertices.iter().map(|&vertex| positions[vertex]).collect();
                 ProbeTarget::Vertices {
                     quantity,
                     shell,

@@ -3,6 +3,7 @@
 use super::simulation::Simulation;
 use super::spec::{Axis, ProbeQuantity};
 use crate::Vec3;
+use crate::geometry::rigid_misfit;
 
 /// A checked probe.
 #[derive(Clone, Debug)]
@@ -27,8 +28,8 @@ pub enum ProbeTarget {
         shell: usize,
         /// Vertices.
         vertices: Vec<usize>,
-        /// Mean start position [m].
-        start: Vec3,
+        /// Their start positions [m].
+        start: Vec<Vec3>,
     },
     /// An energy by name, or the sum [J].
     Energy(Option<String>),
@@ -106,7 +107,7 @@ impl Probe {
         state: &dyn Observable,
         shell: usize,
         vertices: &[usize],
-        start: &Vec3,
+        start: &[Vec3],
     ) -> Vec<f64> {
         let values = match quantity {
             ProbeQuantity::Velocity => state.velocities(shell),
@@ -116,7 +117,14 @@ impl Probe {
         match quantity {
             ProbeQuantity::Lowest => vec![heights.fold(f64::INFINITY, f64::min)],
             ProbeQuantity::Highest => vec![heights.fold(f64::NEG_INFINITY, f64::max)],
-            ProbeQuantity::Displacement => self.components(mean(&values, vertices) - start),
+            ProbeQuantity::Distortion => {
+                let now: Vec<Vec3> = vertices.iter().map(|&vertex| values[vertex]).collect();
+                vec![rigid_misfit(start, &now)]
+            }
+            ProbeQuantity::Displacement => {
+                let moved = vertices.iter().zip(start).map(|(&v, x)| values[v] - x);
+                self.components(moved.sum::<Vec3>() / start.len() as f64)
+            }
             _ => self.components(mean(&values, vertices)),
         }
     }
@@ -127,7 +135,9 @@ impl Probe {
             ProbeTarget::Energy(_)
                 | ProbeTarget::LoadFactor
                 | ProbeTarget::Vertices {
-                    quantity: ProbeQuantity::Lowest | ProbeQuantity::Highest,
+                    quantity: ProbeQuantity::Lowest
+                        | ProbeQuantity::Highest
+                        | ProbeQuantity::Distortion,
                     ..
                 }
         )
@@ -142,7 +152,7 @@ impl Probe {
 }
 
 /// Mean over some vertices.
-pub(super) fn mean(values: &[Vec3], vertices: &[usize]) -> Vec3 {
+fn mean(values: &[Vec3], vertices: &[usize]) -> Vec3 {
     let sum: Vec3 = vertices.iter().map(|&vertex| values[vertex]).sum();
     sum / vertices.len() as f64
 }
@@ -182,7 +192,8 @@ mod tests {
     }
 
     fn vertices(quantity: ProbeQuantity, axis: Option<Axis>) -> Probe {
-        let start = Vec3::new(1.0, 0.0, 0.0);
+        // A unit apart; now 2√2.
+        let start = vec![Vec3::new(1.0, -0.5, 0.0), Vec3::new(1.0, 0.5, 0.0)];
         let target = ProbeTarget::Vertices {
             quantity,
             shell: 0,
@@ -217,6 +228,8 @@ mod tests {
             (vertices(ProbeQuantity::Lowest, None), vec!["p"], vec![1.0]),
             (vertices(ProbeQuantity::Highest, None), vec!["p"], vec![3.0]),
         ];
+        let distortion = vertices(ProbeQuantity::Distortion, None).measure(&Pair);
+        assert!((distortion[0] - (2f64.sqrt() - 0.5)).abs() < 1e-14);
         for (probe, columns, values) in cases {
             assert_eq!(probe.columns(), columns);
             assert_eq!(probe.measure(&Pair), values);

@@ -304,6 +304,8 @@ pub enum ProbeQuantity {
     Lowest,
     /// Largest z [m].
     Highest,
+    /// Root mean square distance from the shape at the start, brought as near as a rigid motion can [m].
+    Distortion,
     /// An energy [J].
     Energy,
     /// Force on a constraint [N].
