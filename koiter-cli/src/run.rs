@@ -118,7 +118,20 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         tell_account(&folder);
         told::print_files(&folder, &made);
     }
+    tell_of_cold(&recorder, &loaded.scene.model);
     judge(&recorder, &loaded.scene.model, num_steps)
+}
+
+/// Says that sources of heat have set fire to nothing.
+fn tell_of_cold(recorder: &Recorder, model: &Model) {
+    let has_sources = !model.heat_sources.is_empty();
+    if let Some(hottest) = (recorder.summary.never_ignited()).filter(|_| has_sources) {
+        log::warn!(
+            target: "koiter",
+            "nothing burnt: after no step was it warmer than {hottest:.0} K; does the source come near, is it hot enough, is its rate \
+             high enough, does ignition_temperature lie below what it can reach?"
+        );
+    }
 }
 
 /// Says where the time went; figures that cannot be read back are no reason to fail.

@@ -128,6 +128,11 @@ const SHIPPED: &[Shipped] = &[
         meshes: &[],
     },
     Shipped {
+        name: "burning-hat",
+        text: include_str!("../../scenes/burning-hat/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
         name: "hot-sphere",
         text: include_str!("../../scenes/hot-sphere/scene.toml"),
         meshes: &[(

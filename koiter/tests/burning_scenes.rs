@@ -116,6 +116,16 @@ fn mistakes_are_told_with_their_place() {
             "at most 1",
         ),
         (
+            "double_layer.paper.burning.strength=1e3",
+            "double_layer.paper.burning.strength",
+            "a key of [shell.burning]",
+        ),
+        (
+            "double_layer.paper.projection={method=\"global\",iterations=20}",
+            "double_layer.paper.projection.iterations",
+            "global",
+        ),
+        (
             "double_layer.paper.projection.sweeps=0",
             "double_layer.paper.projection.sweeps",
             "at least 1",

@@ -1,6 +1,7 @@
-//! `koiter bench burning`: what a step of a double layer costs, and how its projections converge.
+//! `koiter bench burning`: what a step of a double layer costs, how its projections converge, how far burning strips curl.
 
 mod errors;
+mod strips;
 
 use koiter::Vec3;
 use koiter::burning::{
@@ -31,11 +32,12 @@ const DT: f64 = 0.002;
 pub(super) fn bench(arguments: &BurningArguments, json: bool) -> Result<(), Failure> {
     let timing = timing(arguments)?;
     let [competing, sweeps] = [errors::competing_springs(), errors::sweeps()];
+    let strips = strips::table()?;
     if json {
-        let tables = [&timing, &competing, &sweeps].map(Table::json);
+        let tables = [&timing, &competing, &sweeps, &strips].map(Table::json);
         say!("{}", json!({ "bench": "burning", "tables": tables }));
     } else {
-        say!("{timing}\n\n{competing}\n\n{sweeps}");
+        say!("{timing}\n\n{competing}\n\n{sweeps}\n\n{strips}");
     }
     Ok(())
 }

@@ -25,6 +25,8 @@ pub struct Assembled<L, const N: usize, const K: usize> {
     num_solved_nodes: u32,
     /// Of all derivatives.
     factor: f64,
+    /// Elements that give nothing; empty: none.
+    is_gone: Vec<bool>,
     /// The element that bounded the last step most.
     limiter: Option<usize>,
 }
@@ -48,6 +50,7 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
             slots: Vec::new(),
             num_solved_nodes: layout.num_solved_nodes() as u32,
             factor: 1.0,
+            is_gone: Vec::new(),
             limiter: None,
         }
     }
@@ -60,6 +63,10 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
     /// The local energy, to change its parameters; its elements and their nodes must stay.
     pub fn local_mut(&mut self) -> &mut L {
         &mut self.local
+    }
+
+    fn is_there(&self, stencil: usize) -> bool {
+        !self.is_gone.get(stencil).is_some_and(|&is_gone| is_gone)
     }
 
     /// The element's unknowns.
@@ -124,7 +131,10 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
         let mut values = Vec::with_capacity(count);
         for first in (0..count).step_by(GRADIENT_BATCH) {
             let locals = parallel_map(GRADIENT_BATCH.min(count - first), |k| {
-                (self.local).gradient(first + k, &self.gather(first + k, q))
+                match self.is_there(first + k) {
+                    true => (self.local).gradient(first + k, &self.gather(first + k, q)),
+                    false => (0.0, SVector::zeros()),
+                }
             });
             for (k, (value, local)) in locals.iter().enumerate() {
                 values.push(*value);
@@ -135,6 +145,9 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Assembled<L, N, K> {
     }
 
     fn evaluate(&self, stencil: usize, q: &[f64], projection: PsdProjection) -> LocalHessian<N> {
+        if !self.is_there(stencil) {
+            return LocalHessian::zero();
+        }
         let local = self.gather(stencil, q);
         match projection {
             PsdProjection::Exact => self.local.hessian(stencil, &local),
@@ -173,8 +186,9 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
         if self.factor == 0.0 {
             return 0.0;
         }
-        let sum = ordered_sum(self.nodes.len(), |s| {
-            self.local.value(s, &self.gather(s, q))
+        let sum = ordered_sum(self.nodes.len(), |s| match self.is_there(s) {
+            true => self.local.value(s, &self.gather(s, q)),
+            false => 0.0,
         });
         self.factor * sum
     }
@@ -231,7 +245,7 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
     }
 
     fn add_stress_stiffness(&self, q: &[f64], motion: &[f64], hessian: &mut HessianBuilder<'_>) {
-        for stencil in 0..self.nodes.len() {
+        for stencil in (0..self.nodes.len()).filter(|&s| self.is_there(s)) {
             let (here, along) = (self.gather(stencil, q), self.gather(stencil, motion));
             if let Some(local) = self.local.stress_stiffness(stencil, &here, &along) {
                 self.scatter_hessian(stencil, &local, hessian);
@@ -268,6 +282,9 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
         let mut bound = 1.0;
         if L::BOUNDS_STEPS {
             let steps = parallel_map(self.nodes.len(), |s| {
+                if !self.is_there(s) {
+                    return 1.0;
+                }
                 let (q, direction) = (self.gather(s, q), self.gather(s, direction));
                 self.local.max_step(s, &q, &direction)
             });
@@ -297,17 +314,23 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> Energy for Assembled<
     }
 
     fn is_admissible(&self, q: &[f64]) -> bool {
-        (0..self.nodes.len()).all(|s| self.local.is_admissible(s, &self.gather(s, q)))
+        let is_admissible =
+            |s| !self.is_there(s) || self.local.is_admissible(s, &self.gather(s, q));
+        (0..self.nodes.len()).all(is_admissible)
     }
 
     fn undefined_element(&self, q: &[f64]) -> Option<String> {
-        let is_undefined = |s: &usize| !self.local.is_admissible(*s, &self.gather(*s, q));
+        let is_undefined =
+            |s: &usize| self.is_there(*s) && !self.local.is_admissible(*s, &self.gather(*s, q));
         let element = (0..self.nodes.len()).find(is_undefined)?;
         Some(self.local.describe(element))
     }
 
     fn worst_element(&self, q: &[f64]) -> Option<WorstElement> {
         let norms = parallel_map(self.nodes.len(), |s| {
+            if !self.is_there(s) {
+                return 0.0;
+            }
             let (value, gradient) = self.local.gradient(s, &self.gather(s, q));
             if value.is_finite() {
                 self.factor * gradient.norm()
@@ -370,5 +393,12 @@ impl<const N: usize, const K: usize, L: LocalEnergy<N, K>> RestMeasures for Asse
 
     fn set_factor(&mut self, factor: f64) {
         self.factor = factor;
+    }
+
+    fn set_present(&mut self, is_there: &[bool], cuts: &[[bool; 3]]) {
+        self.is_gone = is_there.iter().map(|is_there| !is_there).collect();
+        for (stencil, edges) in cuts.iter().enumerate() {
+            self.local.set_cut(stencil, *edges);
+        }
     }
 }

@@ -121,6 +121,8 @@ pub trait LocalEnergy<const N: usize, const K: usize>: Send + Sync {
     fn set_rest(&mut self, _stencil: usize, _measures: &[f64]) {}
     /// See [`RestMeasures::follow`].
     fn follow(&mut self, _stencil: usize, _measures: &[f64]) {}
+    /// Across which edges a face takes no notice of its neighbour, as at a boundary: see [`RestMeasures::set_present`].
+    fn set_cut(&mut self, _stencil: usize, _edges: [bool; 3]) {}
     /// See [`Energy::add_stress_stiffness`]; `None` of energies without stress.
     fn stress_stiffness(
         &self,
@@ -170,6 +172,9 @@ pub trait RestMeasures {
     fn follow(&mut self, measures: &[f64]);
     /// Φ becomes this factor times what it was made as.
     fn set_factor(&mut self, factor: f64);
+    /// Elements that are not there give nothing from now on; where elements are faces, `cuts` says across which of their
+    /// edges a neighbour has gone: they end there as at a boundary.
+    fn set_present(&mut self, is_there: &[bool], cuts: &[[bool; 3]]);
 }
 
 /// The matrix `weight · vector vectorᵀ`.

@@ -10,16 +10,39 @@
 //! definite, Σ E_i T_i does not change, and no temperature leaves the range of those before. The umbrella operator of the
 //! paper, (2/E) Σ (T_j − T_i) / d, is half of the Laplacian on a surface; c = 2 makes it whole.
 
+use super::diffusion::Diffusion;
 use super::double_layer::DoubleLayer;
 use crate::Vec3;
 
 /// What makes the umbrella operator the Laplacian of a surface; 1 is the paper's formula.
 pub const DIMENSION_FACTOR: f64 = 2.0;
-/// Conduction is solved until the residual has fallen to this share: conservation is as good.
-const TOLERANCE: f64 = 1e-14;
-const MAX_ITERATIONS: usize = 2000;
 /// A spring that is crushed below this share of its initial length conducts as if it were so long.
 const LEAST_LENGTH: f64 = 0.05;
+
+/// Which layers of a shell a source heats: the top one is where normals point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize, serde::Serialize, schemars::JsonSchema),
+    serde(rename_all = "kebab-case")
+)]
+#[non_exhaustive]
+pub enum Side {
+    /// Both layers.
+    #[default]
+    Both,
+    /// The top layer; of double layers the lattice particles.
+    Top,
+    /// The bottom layer; of double layers the corner particles.
+    Bottom,
+}
+
+impl Side {
+    /// Whether a source on this side heats a layer.
+    pub fn heats(self, layer: Self) -> bool {
+        self == Self::Both || self == layer
+    }
+}
 
 /// A ball that heats what is within it, or a source that heats all particles.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,15 +96,8 @@ fn relax(temperature: &mut f64, goal: f64, share: f64) {
 /// Conduction along the springs of a double layer.
 #[derive(Clone, Debug)]
 pub struct Conduction {
-    ends: Vec<[u32; 2]>,
     least_lengths: Vec<f64>,
-    conductances: Vec<f64>,
-    /// E_i [m].
-    extents: Vec<f64>,
-    diagonal: Vec<f64>,
-    residual: Vec<f64>,
-    direction: Vec<f64>,
-    product: Vec<f64>,
+    diffusion: Diffusion,
 }
 
 impl Conduction {
@@ -90,16 +106,9 @@ impl Conduction {
         let springs = shell.springs.iter();
         let ends: Vec<_> = springs.clone().flat_map(|s| s.ends.clone()).collect();
         let lengths = springs.flat_map(|s| &s.initial_lengths);
-        let n = shell.particles.len();
         Self {
             least_lengths: lengths.map(|length| LEAST_LENGTH * length).collect(),
-            conductances: vec![0.0; ends.len()],
-            extents: vec![0.0; n],
-            diagonal: vec![0.0; n],
-            residual: vec![0.0; n],
-            direction: vec![0.0; n],
-            product: vec![0.0; n],
-            ends,
+            diffusion: Diffusion::new(ends, shell.particles.len()),
         }
     }
 
@@ -112,116 +121,32 @@ impl Conduction {
         dt: f64,
         temperatures: &mut [f64],
     ) -> usize {
-        self.assemble(positions, is_there, diffusivity, dt);
-        self.solve(temperatures)
-    }
-
-    /// E_i of every particle at the last step [m]: its weight in the mean temperature that conduction keeps.
-    pub fn extents(&self) -> &[f64] {
-        &self.extents
-    }
-
-    fn assemble(
-        &mut self,
-        positions: &[Vec3],
-        is_there: &[Vec<bool>; 4],
-        diffusivity: &[f64],
-        dt: f64,
-    ) {
-        self.extents.fill(0.0);
-        self.diagonal.fill(0.0);
-        let springs = self.ends.iter().zip(&self.least_lengths);
+        let Diffusion {
+            ends,
+            conductances,
+            capacities,
+            ..
+        } = &mut self.diffusion;
+        capacities.fill(0.0);
+        let springs = ends.iter().zip(&self.least_lengths);
         let springs = springs.zip(is_there.iter().flatten());
-        for (((&[a, b], &least), &is_there), conductance) in springs.zip(&mut self.conductances) {
+        for (((&[a, b], &least), &is_there), conductance) in springs.zip(conductances) {
             let (a, b) = (a as usize, b as usize);
             *conductance = 0.0;
             if is_there {
                 let length = (positions[a] - positions[b]).norm().max(least);
                 let twice_mean = diffusivity[a] + diffusivity[b];
                 *conductance = DIMENSION_FACTOR * dt * twice_mean / length;
-                for particle in [a, b] {
-                    self.extents[particle] += length;
-                    self.diagonal[particle] += *conductance;
-                }
+                capacities[a] += length;
+                capacities[b] += length;
             }
         }
-        for (diagonal, extent) in self.diagonal.iter_mut().zip(&self.extents) {
-            *diagonal += extent;
-            if *diagonal == 0.0 {
-                // A particle without springs keeps its temperature.
-                *diagonal = 1.0;
-            }
-        }
+        self.diffusion.conduct(temperatures)
     }
 
-    /// Conjugate gradients from the temperatures before, preconditioned by the diagonal.
-    fn solve(&mut self, temperatures: &mut [f64]) -> usize {
-        // E T − A T: what conduction alone moves.
-        self.residual.fill(0.0);
-        for (&[a, b], conductance) in self.ends.iter().zip(&self.conductances) {
-            let (a, b) = (a as usize, b as usize);
-            let flow = conductance * (temperatures[a] - temperatures[b]);
-            self.residual[a] -= flow;
-            self.residual[b] += flow;
-        }
-        let scale: f64 = self
-            .extents
-            .iter()
-            .zip(&*temperatures)
-            .map(|(e, t)| (e * t).powi(2))
-            .sum();
-        let mut rho = 0.0;
-        for ((direction, residual), diagonal) in self
-            .direction
-            .iter_mut()
-            .zip(&self.residual)
-            .zip(&self.diagonal)
-        {
-            *direction = residual / diagonal;
-            rho += residual * *direction;
-        }
-        for iteration in 0..MAX_ITERATIONS {
-            let left: f64 = self.residual.iter().map(|r| r * r).sum();
-            if !(left > TOLERANCE * TOLERANCE * scale) {
-                return iteration;
-            }
-            let step = rho / self.multiply();
-            let mut next = 0.0;
-            for particle in 0..temperatures.len() {
-                temperatures[particle] += step * self.direction[particle];
-                self.residual[particle] -= step * self.product[particle];
-                next += self.residual[particle].powi(2) / self.diagonal[particle];
-            }
-            let keep = next / rho;
-            rho = next;
-            for particle in 0..temperatures.len() {
-                self.direction[particle] = self.residual[particle] / self.diagonal[particle]
-                    + keep * self.direction[particle];
-            }
-        }
-        MAX_ITERATIONS
-    }
-
-    /// `product` = A `direction`; returns their inner product.
-    fn multiply(&mut self) -> f64 {
-        for ((product, diagonal), direction) in self
-            .product
-            .iter_mut()
-            .zip(&self.diagonal)
-            .zip(&self.direction)
-        {
-            *product = diagonal * direction;
-        }
-        for (&[a, b], conductance) in self.ends.iter().zip(&self.conductances) {
-            let (a, b) = (a as usize, b as usize);
-            self.product[a] -= conductance * self.direction[b];
-            self.product[b] -= conductance * self.direction[a];
-        }
-        self.product
-            .iter()
-            .zip(&self.direction)
-            .map(|(p, d)| p * d)
-            .sum()
+    /// E_i of every particle at the last step [m]: its weight in the mean temperature that conduction keeps.
+    pub fn extents(&self) -> &[f64] {
+        &self.diffusion.capacities
     }
 }
 

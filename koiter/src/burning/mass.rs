@@ -10,6 +10,9 @@
 //! p shrinkage exponent: 1 as in the paper, 1/3 the same in all directions, 1/2 area in proportion to mass, 0 none. Lengths
 //! come from the initial ones: from the present ones they would shrink anew in every step.
 
+use super::error::BurningError;
+use super::numbers::{not_negative, share, within};
+
 /// How a shell burns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BurningOptions {
@@ -46,6 +49,40 @@ impl Default for BurningOptions {
 }
 
 impl BurningOptions {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// A number out of its range, by the name that scenes give it.
+    pub fn check(&self) -> Result<(), BurningError> {
+        not_negative("ignition_temperature", self.ignition_temperature)?;
+        not_negative("loss_rate", self.loss_rate)?;
+        not_negative("heat_of_combustion", self.heat_of_combustion)?;
+        share("smallest_mass", self.smallest_mass)?;
+        // Inverse masses and lengths have to be numbers that can be squared.
+        within(
+            "smallest_mass",
+            self.smallest_mass,
+            [1e-3, 1.0],
+            "from 0.001 to 1",
+        )?;
+        within(
+            "shrinkage_exponent",
+            self.shrinkage_exponent,
+            [0.0, 10.0],
+            "from 0 to 10",
+        )?;
+        share("largest_change", self.largest_change)?;
+        share("loss_level", self.loss_level)
+    }
+
+    /// Factor on lengths at a mean mass ratio.
+    pub fn length_factor(&self, mass_ratio: f64) -> f64 {
+        match self.shrinkage_exponent {
+            1.0 => mass_ratio,
+            exponent => mass_ratio.powf(exponent),
+        }
+    }
+
     /// How fast a particle burns [1/s]; `rate_factor` scales µ.
     fn burning_rate(&self, temperature: f64, rate_factor: f64, mass_ratio: f64) -> f64 {
         let is_burning = temperature > self.ignition_temperature && mass_ratio > self.smallest_mass;
@@ -93,11 +130,7 @@ impl BurningOptions {
     ) {
         for ((target, &[a, b]), initial) in targets.iter_mut().zip(ends).zip(initial_lengths) {
             let mean = 0.5 * (mass_ratios[a as usize] + mass_ratios[b as usize]);
-            let factor = match self.shrinkage_exponent {
-                1.0 => mean,
-                exponent => mean.powf(exponent),
-            };
-            *target = initial * factor;
+            *target = initial * self.length_factor(mean);
         }
     }
 

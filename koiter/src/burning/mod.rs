@@ -1,7 +1,8 @@
 //! Burning cloth and paper: double layers of springs that heat, lose mass, shrink, wrinkle and burn through.
 //!
 //! A [`BurningShell`] is stepped by projections onto lengths of springs and not by the minimisation of an energy: it shares
-//! nothing with the elastic shells of this library but positions and bodies. A step is, in this order:
+//! nothing with the elastic shells of this library but positions and bodies. A [`HeatedShell`] is the same heat and the same fire on
+//! any triangle mesh, whose elastic shell does the shrinking and the moving. A step of a double layer is, in this order:
 //!
 //! | what | where |
 //! | --- | --- |
@@ -15,26 +16,31 @@
 
 mod ablation;
 mod collisions;
+mod diffusion;
 mod double_layer;
 mod error;
 mod global_solve;
 mod heat;
+mod heated_shell;
 mod mass;
 mod measures;
 mod network;
+mod numbers;
 mod projection;
 mod quad_mesh;
 mod springs;
 mod stepper;
 mod surface;
 mod texture;
+mod triangle_conduction;
 
 pub use ablation::Remaining;
 pub use collisions::{Collider, ColliderShape};
 pub use double_layer::{COLORS, Color, DoubleLayer};
 pub use error::{BurningError, QuadMeshError, TextureError};
 pub use global_solve::{GlobalLimits, GlobalSolve};
-pub use heat::{Conduction, DIMENSION_FACTOR, HeatSource};
+pub use heat::{Conduction, DIMENSION_FACTOR, HeatSource, Side};
+pub use heated_shell::{HeatedMeasures, HeatedSetup, HeatedShell, HeatedState};
 pub use mass::BurningOptions;
 pub use measures::BurningMeasures;
 pub use network::{Errors, Mobility, Network, StepLimits};
@@ -44,3 +50,4 @@ pub use springs::Springs;
 pub use stepper::{BurningReport, BurningSetup, BurningShell, BurningState, Surroundings};
 pub use surface::{Between, RenderSurface};
 pub use texture::Texture;
+pub use triangle_conduction::TriangleConduction;

@@ -18,7 +18,10 @@ use super::global_solve::{GlobalLimits, GlobalSolve};
 use super::heat::{Conduction, HeatSource, cool, heat};
 use super::mass::BurningOptions;
 use super::network::Mobility;
-use super::projection::{Lengths, Projection, ProjectionMethod, ProjectionOptions};
+use super::numbers::{not_negative, positive, share, within};
+use super::projection::{
+    Lengths, Projection, ProjectionMethod, ProjectionOptions, ProjectionReport,
+};
 use super::surface::RenderSurface;
 use crate::Vec3;
 use crate::solve::NotPositiveDefinite;
@@ -90,6 +93,8 @@ pub struct BurningReport {
     pub sweeps: usize,
     /// Iterations of conjugate gradients of projections.
     pub gradient_iterations: usize,
+    /// Parts in which not all springs had their lengths at the end.
+    pub unmet: usize,
     /// Wall time [s] of heat, mass loss and cutting, and motion.
     pub seconds: [f64; 3],
 }
@@ -100,6 +105,7 @@ impl BurningReport {
         self.parts = self.parts.max(other.parts);
         self.sweeps += other.sweeps;
         self.gradient_iterations += other.gradient_iterations;
+        self.unmet += other.unmet;
         for (seconds, more) in self.seconds.iter_mut().zip(other.seconds) {
             *seconds += more;
         }
@@ -240,9 +246,10 @@ impl BurningShell {
         );
         self.shrink_and_cut();
         lap(1);
-        let taken = self.move_particles(dt, surroundings)?;
-        report.sweeps += taken[0];
-        report.gradient_iterations += taken[1];
+        let taken = self.move_particles(dt, 1.0 / report.parts as f64, surroundings)?;
+        report.sweeps += taken.sweeps;
+        report.gradient_iterations += taken.gradient_iterations;
+        report.unmet += usize::from(!taken.converged);
         lap(2);
         Ok(())
     }
@@ -274,12 +281,13 @@ impl BurningShell {
             .update(&self.setup.shell, &self.is_triangle_there);
     }
 
-    /// Returns sweeps and iterations.
+    /// `share` is that of `dt` in the step: so much of a step's friction is taken.
     fn move_particles(
         &mut self,
         dt: f64,
+        share: f64,
         surroundings: &Surroundings,
-    ) -> Result<[usize; 2], NotPositiveDefinite> {
+    ) -> Result<ProjectionReport, NotPositiveDefinite> {
         self.set_mobility(&surroundings.held);
         let state = &mut self.state;
         self.trial.copy_from_slice(&state.positions);
@@ -298,7 +306,10 @@ impl BurningShell {
             self.trial[particle as usize] = place;
         }
         let colliders = surroundings.colliders.iter();
-        let colliders = colliders.map(|collider| collider.with_clearance(self.clearance));
+        let colliders = colliders.map(|collider| Collider {
+            friction: 1.0 - (1.0 - collider.friction).powf(share),
+            ..collider.with_clearance(self.clearance)
+        });
         let mobility = &self.mobility;
         let in_matrix = match self.setup.projection.held_ends_count {
             true => &self.mobility_in_matrix,
@@ -343,7 +354,7 @@ impl BurningShell {
         for collider in colliders.clone() {
             collider.slow(&state.positions, mobility, touching, &mut state.velocities);
         }
-        Ok([taken.sweeps, taken.gradient_iterations])
+        Ok(taken)
     }
 
     /// Inverse masses [1/kg], 0 of particles that are held or gone.
@@ -438,64 +449,17 @@ impl BurningShell {
     /// # Errors
     /// A number out of its range, by the name that scenes give it.
     pub fn check(setup: &BurningSetup) -> Result<(), BurningError> {
-        let positive = "larger than 0";
-        let not_negative = "0 or larger";
-        let burning = &setup.burning;
-        let at_least = |what, value: f64, least: f64, is_allowed: bool| {
-            let expected = if is_allowed { not_negative } else { positive };
-            match value.is_finite() && (value > least || (is_allowed && value == least)) {
-                true => Ok(()),
-                false => Err(BurningError::Value {
-                    what,
-                    value,
-                    expected,
-                }),
-            }
-        };
-        at_least("thickness", setup.shell.thickness, 0.0, false)?;
-        at_least("area_density", setup.area_density, 0.0, false)?;
-        at_least("temperature", setup.temperature, 0.0, true)?;
-        at_least("ambient_temperature", setup.ambient_temperature, 0.0, true)?;
-        at_least("cooling_rate", setup.cooling_rate, 0.0, true)?;
-        at_least("diffusivity", setup.diffusivity, 0.0, true)?;
-        at_least("damping", setup.damping, 0.0, true)?;
-        at_least(
-            "ignition_temperature",
-            burning.ignition_temperature,
-            0.0,
-            true,
-        )?;
-        at_least("loss_rate", burning.loss_rate, 0.0, true)?;
-        at_least("heat_of_combustion", burning.heat_of_combustion, 0.0, true)?;
-        at_least("shrinkage_exponent", burning.shrinkage_exponent, 0.0, true)?;
-        at_least("compliance", setup.projection.compliance, 0.0, false)?;
-        at_least("tolerance", setup.projection.tolerance, 0.0, true)?;
-        let share = |what, value: f64| match value > 0.0 && value <= 1.0 {
-            true => Ok(()),
-            false => Err(BurningError::Value {
-                what,
-                value,
-                expected: "above 0 and at most 1",
-            }),
-        };
-        share("smallest_mass", burning.smallest_mass)?;
-        let within = |what, value: f64, [least, most]: [f64; 2], expected| match value >= least
-            && value <= most
-        {
-            true => Ok(()),
-            false => Err(BurningError::Value {
-                what,
-                value,
-                expected,
-            }),
-        };
+        positive("thickness", setup.shell.thickness)?;
+        positive("area_density", setup.area_density)?;
+        not_negative("temperature", setup.temperature)?;
+        not_negative("ambient_temperature", setup.ambient_temperature)?;
+        not_negative("cooling_rate", setup.cooling_rate)?;
+        not_negative("diffusivity", setup.diffusivity)?;
+        not_negative("damping", setup.damping)?;
+        positive("compliance", setup.projection.compliance)?;
+        not_negative("tolerance", setup.projection.tolerance)?;
+        setup.burning.check()?;
         // Inverse masses, lengths and stiffnesses have to be numbers that can be squared.
-        within(
-            "smallest_mass",
-            burning.smallest_mass,
-            [1e-3, 1.0],
-            "from 0.001 to 1",
-        )?;
         within(
             "area_density",
             setup.area_density,
@@ -507,12 +471,6 @@ impl BurningShell {
             setup.projection.compliance,
             [1e-30, 1e30],
             "from 1e-30 to 1e30",
-        )?;
-        within(
-            "shrinkage_exponent",
-            burning.shrinkage_exponent,
-            [0.0, 10.0],
-            "from 0 to 10",
         )?;
         for springs in &setup.shell.springs {
             let lengths = &springs.initial_lengths;
@@ -529,8 +487,6 @@ impl BurningShell {
                 });
             }
         }
-        share("largest_change", burning.largest_change)?;
-        share("loss_level", burning.loss_level)?;
         setup
             .projection
             .weights

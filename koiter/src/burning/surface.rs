@@ -12,6 +12,7 @@
 use super::double_layer::DoubleLayer;
 use super::quad_mesh::QuadMesh;
 use crate::Vec3;
+use crate::mesh::TriMesh;
 
 const NONE: u32 = u32::MAX;
 
@@ -75,11 +76,37 @@ impl RenderSurface {
                 triangle_edges[4 * side.quad as usize + side.corner as usize][2] = index as u32;
             }
         }
+        let num_nodes = num_corners + num_quads;
+        Self::whole(
+            triangles,
+            triangle_edges,
+            num_nodes,
+            num_edges + 4 * num_quads,
+        )
+    }
+
+    /// The whole of a mesh of triangles: its vertices are the nodes.
+    pub fn of_mesh(mesh: &TriMesh) -> Self {
+        let edges = mesh.face_edges().iter();
+        Self::whole(
+            mesh.faces().to_vec(),
+            edges.map(|edges| edges.map(|edge| edge.0)).collect(),
+            mesh.num_vertices(),
+            mesh.num_edges(),
+        )
+    }
+
+    fn whole(
+        triangles: Vec<[u32; 3]>,
+        triangle_edges: Vec<[u32; 3]>,
+        num_nodes: usize,
+        num_edges: usize,
+    ) -> Self {
         let mut surface = Self {
             triangles,
             triangle_edges,
-            vertex_of_node: vec![NONE; num_corners + num_quads],
-            vertex_of_edge: vec![NONE; num_edges + 4 * num_quads],
+            vertex_of_node: vec![NONE; num_nodes],
+            vertex_of_edge: vec![NONE; num_edges],
             vertices: Vec::new(),
             faces: Vec::new(),
             face_triangles: Vec::new(),
@@ -90,12 +117,17 @@ impl RenderSurface {
 
     /// Cuts the render mesh by the levels of its nodes.
     pub fn rebuild(&mut self, level: impl Fn(usize) -> f64) {
+        self.rebuild_of(|_| true, level);
+    }
+
+    /// Cuts what is left of the render mesh where only some triangles are there.
+    pub fn rebuild_of(&mut self, is_present: impl Fn(usize) -> bool, level: impl Fn(usize) -> f64) {
         self.vertices.clear();
         self.faces.clear();
         self.face_triangles.clear();
         self.vertex_of_node.fill(NONE);
         self.vertex_of_edge.fill(NONE);
-        for triangle in 0..self.triangles.len() {
+        for triangle in (0..self.triangles.len()).filter(|&triangle| is_present(triangle)) {
             let levels = self.triangles[triangle].map(|node| level(node as usize));
             let is_there = levels.map(|level| level >= 0.0);
             // Turned so that a corner that is alone, here or gone, comes first.
@@ -168,16 +200,23 @@ impl RenderSurface {
 
     /// Positions of the vertices [m], by those of the particles.
     pub fn positions(&self, shell: &DoubleLayer, particles: &[Vec3]) -> Vec<Vec3> {
-        let at = |node: usize| node_position(shell, particles, node);
-        self.vertices
-            .iter()
-            .map(|vertex| vertex.point(at))
-            .collect()
+        self.positions_by(|node| node_position(shell, particles, node))
+    }
+
+    /// Positions of the vertices [m], by those of the nodes.
+    pub fn positions_by(&self, node: impl Fn(usize) -> Vec3) -> Vec<Vec3> {
+        let vertices = self.vertices.iter();
+        vertices.map(|vertex| vertex.point(&node)).collect()
     }
 
     /// Area of what is left [m²], by positions of the particles.
     pub fn area(&self, shell: &DoubleLayer, particles: &[Vec3]) -> f64 {
-        let positions = self.positions(shell, particles);
+        self.area_by(|node| node_position(shell, particles, node))
+    }
+
+    /// Area of what is left [m²], by positions of the nodes.
+    pub fn area_by(&self, node: impl Fn(usize) -> Vec3) -> f64 {
+        let positions = self.positions_by(node);
         let area = |face: &[u32; 3]| {
             let [a, b, c] = face.map(|vertex| positions[vertex as usize]);
             0.5 * (b - a).cross(&(c - a)).norm()

@@ -86,6 +86,13 @@ impl Contact {
         &self.mesh
     }
 
+    /// Leaves of a body only these of its faces: see [`CollisionMesh::set_present`].
+    pub fn set_present(&mut self, body: usize, is_there: &[bool]) {
+        self.mesh.set_present(body, is_there);
+        self.forget_search();
+        self.active.clear();
+    }
+
     /// Barrier stiffness [J/m²].
     pub fn kappa(&self) -> f64 {
         self.kappa
@@ -189,7 +196,8 @@ impl Contact {
                 let vertex = v as u32;
                 let distance = obstacle.distance(&self.mesh.position(vertex, q), q);
                 let close = distance - self.mesh.offset(vertex) < self.d_hat;
-                (close && !self.mesh.is_obstacle(vertex)).then_some(distance)
+                let can_touch = !self.mesh.is_obstacle(vertex) && !self.mesh.is_gone(vertex);
+                (close && can_touch).then_some(distance)
             });
             let found = distances.iter().enumerate();
             near.extend(found.filter_map(|(v, d)| {

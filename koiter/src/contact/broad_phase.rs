@@ -81,7 +81,9 @@ impl BoxTree {
 
     /// Sum of the half surface areas of all inner boxes [m²]: grows as the order of the leaves gets worse.
     pub fn cost(&self) -> f64 {
-        self.boxes[1.min(self.boxes.len())..self.width.min(self.boxes.len())]
+        // None of these where there is no primitive.
+        let end = self.width.min(self.boxes.len());
+        self.boxes[1.min(end)..end]
             .iter()
             .filter(|b| b.low[0] <= b.high[0])
             .map(|b| {

@@ -85,7 +85,7 @@ impl Candidates {
             limit,
             |v, f| {
                 let face = &mesh.faces[f as usize];
-                face.contains(&v) || both_obstacles(v, face[0])
+                face.contains(&v) || both_obstacles(v, face[0]) || mesh.is_gone(v)
             },
             |v, f| {
                 let [a, b, c] = mesh.faces[f as usize];

@@ -1,6 +1,6 @@
 //! Everything that can touch, as vertices, edges and faces with offsets.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::Vec3;
 use crate::assembly::Dof;
@@ -49,6 +49,10 @@ pub struct CollisionMesh {
     pub bodies: Vec<CollisionBody>,
     /// First vertex and first face of each body.
     pub body_starts: Vec<(u32, u32)>,
+    /// Of each vertex, whether it belongs to nothing that can touch any more.
+    is_gone: Vec<bool>,
+    /// Faces that are there, of bodies that lose some; `None`: all.
+    present: Vec<Option<Vec<bool>>>,
 }
 
 impl CollisionMesh {
@@ -77,8 +81,49 @@ impl CollisionMesh {
                 }
             }
         }
+        mesh.is_gone = vec![false; mesh.vertices.len()];
+        mesh.present = vec![None; bodies.len()];
         mesh.bodies = bodies;
         mesh
+    }
+
+    /// Leaves of a body only these of its faces, with their edges and vertices; areas and rest lengths stay.
+    pub fn set_present(&mut self, body: usize, is_there: &[bool]) {
+        self.present[body] = Some(is_there.to_vec());
+        self.edges.clear();
+        self.faces.clear();
+        for (index, body) in self.bodies.iter().enumerate() {
+            let (first, _) = self.body_starts[index];
+            let Some(present) = &self.present[index] else {
+                (self.edges).extend(body.edges.iter().map(|edge| edge.map(|v| first + v)));
+                (self.faces).extend(body.faces.iter().map(|face| face.map(|v| first + v)));
+                continue;
+            };
+            let kept = body.faces.iter().zip(present);
+            let kept = kept
+                .filter(|(_, is_there)| **is_there)
+                .map(|(face, _)| face);
+            let mut sides = HashSet::new();
+            let is_gone = &mut self.is_gone[first as usize..][..body.num_vertices];
+            is_gone.fill(true);
+            for face in kept {
+                self.faces.push(face.map(|v| first + v));
+                for k in 0..3 {
+                    is_gone[face[k] as usize] = false;
+                    let (u, v) = (face[k], face[(k + 1) % 3]);
+                    sides.insert([u.min(v), u.max(v)]);
+                }
+            }
+            let edges = body.edges.iter();
+            let edges = edges.filter(|[u, v]| sides.contains(&[*u.min(v), *u.max(v)]));
+            self.edges.extend(edges.map(|edge| edge.map(|v| first + v)));
+        }
+    }
+
+    /// Whether a vertex belongs to no face any more.
+    #[inline]
+    pub fn is_gone(&self, vertex: u32) -> bool {
+        self.is_gone[vertex as usize]
     }
 
     /// Rest area of a face, by its vertices [m²].

@@ -94,7 +94,8 @@ impl Contact {
     ) -> (f64, Option<Limiter>) {
         let mut bound = (1.0, None);
         for (index, plane) in self.planes.iter().enumerate() {
-            for v in (0..x.len() as u32).filter(|&v| !self.mesh.is_obstacle(v)) {
+            let can_touch = |&v: &u32| !self.mesh.is_obstacle(v) && !self.mesh.is_gone(v);
+            for v in (0..x.len() as u32).filter(can_touch) {
                 let gap = plane.distance(&x[v as usize], q) - self.mesh.offset(v);
                 let approach = -plane.approach(&dx[v as usize], direction);
                 if approach * bound.0 > 0.9 * gap {

@@ -39,6 +39,8 @@ pub struct ShellPart {
     pub director_shape: DirectorShape,
     /// The unknowns of each face and its neighbours.
     pub stencils: Vec<BendingStencil>,
+    /// Places among [`super::System::elastic`] of the energies of its membrane.
+    pub membranes: Range<usize>,
     /// Place among [`super::System::elastic`] of the energy that compares measures of curvature with rest values, if there is one.
     pub bending: Option<usize>,
 }

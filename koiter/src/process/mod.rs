@@ -1,18 +1,21 @@
-//! What changes the rest state of a shell while it moves: curvature that is prescribed over time, creases, plastic flow.
+//! What changes the rest state of a shell while it moves: curvature that is prescribed over time, creases, plastic flow,
+//! shrinkage by fire.
 //!
 //! An energy compares measures of strain with rest values ([`crate::assembly::RestMeasures`]); of bending these are hinge
 //! angles or second fundamental forms. A [`RestState`] holds the rest values of one shell. Processes move it before every
 //! step, from the shape at its start, and are the only ones to do so after a shell is made; the step then sees the new
 //! values, and damping the rate at which they came.
 //!
-//! Rest lengths and areas stay what they are: there is no plasticity of the membrane.
+//! Rest frames stay what they are, and there is no plasticity of the membrane; shrinkage moves its rest strain.
 
 mod crease;
 mod curl;
+mod shrinkage;
 mod yielding;
 
 pub use crease::{Crease, Fold};
 pub use curl::{Curl, on_cylinder};
+pub use shrinkage::{Bent, Shrinkage, Stretched};
 pub use yielding::{Measure, Yielding};
 
 /// The rest state of one shell, as far as processes change it.
@@ -22,6 +25,8 @@ pub struct RestState {
     pub curvature: Vec<f64>,
     /// How far each measure of them has flowed in all, forwards and backwards: yielding hardens by it. Empty: nothing yields.
     pub flow: Vec<f64>,
+    /// Rest values of the measures of the membranes, which shrinkage moves; empty: nothing shrinks.
+    pub strain: Vec<f64>,
 }
 
 /// What a process sees of a step.

@@ -107,7 +107,7 @@ mod tests {
     fn below_the_threshold_nothing_flows() {
         let mut rest = RestState {
             curvature: vec![0.2, -0.3],
-            flow: Vec::new(),
+            ..RestState::default()
         };
         advance(&yielding(Measure::Number), &mut rest, &[0.29, -0.39], 1.0);
         assert_eq!((rest.curvature, rest.flow), (vec![0.2, -0.3], vec![0.0; 2]));
@@ -118,7 +118,7 @@ mod tests {
         let process = yielding(Measure::Number);
         let mut rest = RestState {
             curvature: vec![0.0],
-            flow: Vec::new(),
+            ..RestState::default()
         };
         for measured in [1.0, 1.5, -2.0] {
             advance(&process, &mut rest, &[measured], 0.01);
@@ -142,7 +142,7 @@ mod tests {
         let run = |steps: usize| {
             let mut rest = RestState {
                 curvature: vec![0.0],
-                flow: Vec::new(),
+                ..RestState::default()
             };
             (0..steps).for_each(|_| advance(&process, &mut rest, &[1.0], 0.2 / steps as f64));
             rest.curvature[0]
@@ -159,7 +159,7 @@ mod tests {
         let flow = |measured: [f64; 3]| {
             let mut rest = RestState {
                 curvature: vec![0.0; 3],
-                flow: Vec::new(),
+                ..RestState::default()
             };
             advance(&process, &mut rest, &measured, 1.0);
             (rest.curvature, rest.flow[0])

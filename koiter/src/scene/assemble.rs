@@ -49,6 +49,14 @@ pub enum BuildError {
         /// What is wrong.
         error: BurningError,
     },
+    /// A shell that cannot burn so.
+    #[error("shell '{shell}': {error}")]
+    Burning {
+        /// Name of the shell.
+        shell: String,
+        /// What is wrong.
+        error: BurningError,
+    },
     /// A face that is stretched to its limit at the start.
     #[error(
         "shell '{shell}': face {face} starts stretched to {stretch:.4} times its rest length, but strain_limit.stretch is \

@@ -5,6 +5,7 @@ mod burning;
 mod composition;
 mod deformation;
 mod energies;
+mod heated;
 mod loads;
 mod phases;
 mod processes;
@@ -117,7 +118,8 @@ impl Builder<'_> {
             .map(|o| self.obstacle(o))
             .collect::<Result<_, _>>()?;
         let double_layers = self.double_layers()?;
-        let heat_sources = self.heat_sources(&double_layers)?;
+        let heated_shells = self.heated_shells(&shells)?;
+        let heat_sources = self.heat_sources(&double_layers, &heated_shells)?;
         let constraints = self.constraints(&shells)?;
         let loads = self.loads(&shells)?;
         let energies = self.energies(&shells)?;
@@ -127,6 +129,7 @@ impl Builder<'_> {
         Ok(Model {
             shells,
             double_layers,
+            heated_shells,
             heat_sources,
             obstacles,
             constraints,

@@ -8,7 +8,7 @@ use super::simulation::Simulation;
 use crate::Vec3;
 use crate::burning::{
     BurningMeasures, BurningReport, BurningSetup, BurningShell, BurningState, Collider,
-    ColliderShape, HeatSource, Surroundings,
+    ColliderShape, HeatSource, Side, Surroundings,
 };
 use crate::integrate::{StepError, StepReport};
 
@@ -50,7 +50,9 @@ pub struct HeatSourcePart {
     pub temperature: f64,
     /// How fast particles take it on [1/s].
     pub rate: f64,
-    /// Factors on the rate, by particle of each double layer; empty: 1.
+    /// Which layers it heats.
+    pub side: Side,
+    /// Factors on the rate, by particle of each double layer or by vertex of each burning shell; empty: 1.
     pub intensity: Vec<Vec<f64>>,
 }
 
@@ -145,7 +147,13 @@ impl Simulation {
             converged: true,
             min_gap: f64::INFINITY,
             parts: 1,
-            measures: self.burning_measures(),
+            measures: {
+                let mut measures = self.burning_measures();
+                // A projection that stops at its number of sweeps is the method, not a failure of the step.
+                measures.push(("burning_parts", total.parts as f64));
+                measures.push(("unmet_parts", total.unmet as f64));
+                measures
+            },
             seconds: vec![("heat", heat), ("mass_loss", mass_loss), ("motion", motion)],
             ..StepReport::default()
         })
@@ -230,23 +238,18 @@ fn surround(model: &Model, index: usize, time: f64, around: &mut Surroundings) {
         });
         around.held.extend(places);
     }
-    around
-        .sources
-        .resize_with(model.heat_sources.len(), || HeatSource {
-            ball: None,
-            temperature: 0.0,
-            rate: 0.0,
-            intensity: Vec::new(),
-        });
-    for (source, part) in around.sources.iter_mut().zip(&model.heat_sources) {
-        source.ball = part
-            .ball
-            .map(|(center, radius)| (part.motion.apply(center, time), radius));
-        (source.temperature, source.rate) = (part.temperature, part.rate);
-        source.intensity.clear();
-        source
-            .intensity
-            .extend_from_slice(part.intensity.get(index).map_or(&[], |list| list));
+    around.sources.clear();
+    let sources = model.heat_sources.iter();
+    (around.sources).extend(sources.map(|part| heat_source(part, index, time)));
+}
+
+/// A source at a time [s], as it acts on the double layer or the burning shell with this number.
+pub(super) fn heat_source(part: &HeatSourcePart, index: usize, time: f64) -> HeatSource {
+    HeatSource {
+        ball: (part.ball).map(|(center, radius)| (part.motion.apply(center, time), radius)),
+        temperature: part.temperature,
+        rate: part.rate,
+        intensity: part.intensity.get(index).cloned().unwrap_or_default(),
     }
 }
 

@@ -152,9 +152,14 @@ impl Obstacle {
 impl Simulation {
     /// Positions of the vertices of all parts [m].
     pub fn display_positions(&self) -> Vec<Vec3> {
-        let mut positions: Vec<Vec3> = (0..self.model.shells.len())
-            .flat_map(|shell| self.shell_positions(shell))
-            .collect();
+        let shown = |shell: usize| {
+            let positions = self.shell_positions(shell);
+            match self.heated_shell(shell) {
+                Some(burning) => burning.surface().positions_by(|v| positions[v]),
+                None => positions,
+            }
+        };
+        let mut positions: Vec<Vec3> = (0..self.model.shells.len()).flat_map(shown).collect();
         for (part, layer) in self.model.double_layers.iter().zip(self.double_layers()) {
             let particles = &layer.state().positions;
             positions.extend(layer.surface().positions(&part.setup.shell, particles));
@@ -167,19 +172,36 @@ impl Simulation {
         positions
     }
 
-    /// The surfaces to show as they are now, where their faces change from step to step: those of double layers have
+    /// The surfaces to show as they are now, where their faces change from step to step: those that burn have
     /// their present positions for a start. `None`: [`Self::parts`] are right throughout.
     pub fn present_parts(&self) -> Option<Vec<PartTopology>> {
-        if self.burning.is_empty() {
+        if self.burning.is_empty() && self.heated.is_empty() {
             return None;
         }
+        let shells = self
+            .parts()
+            .iter()
+            .take(self.model.shells.len())
+            .enumerate();
+        let shells = shells.map(|(shell, part)| match self.heated_shell(shell) {
+            None => part.clone(),
+            Some(burning) => {
+                let (surface, positions) = (burning.surface(), self.shell_positions(shell));
+                PartTopology {
+                    faces: surface.faces.clone(),
+                    num_vertices: surface.vertices.len(),
+                    start_positions: surface.positions_by(|v| positions[v]),
+                    ..part.clone()
+                }
+            }
+        });
         let layers = self.model.double_layers.iter().zip(&self.burning.shells);
         let layers = layers.map(|(part, layer)| {
             let (shell, positions) = (&part.setup.shell, &layer.state().positions);
             layer_part(&part.name, shell, layer.surface(), positions)
         });
         let obstacles = self.parts().iter().filter(|part| part.is_obstacle);
-        Some(layers.chain(obstacles.cloned()).collect())
+        Some(shells.chain(layers).chain(obstacles.cloned()).collect())
     }
 
     /// What the faces of all parts are at rest: those of shells in their rest metric, those of obstacles at the start.

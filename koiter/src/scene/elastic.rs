@@ -126,7 +126,9 @@ impl Elastic {
     ) -> Result<(), RestError> {
         let masses = &mut self.masses;
         add_vertex_masses(shell, &part, masses);
+        let first_membrane = self.energies.len();
         self.energies.extend(membrane(shell, &part, layout));
+        part.membranes = first_membrane..self.energies.len();
         let bending = bending_energy(shell, &mut part, held, layout, q, masses)?;
         part.bending = (shell.bending.measures_curvature()).then_some(self.energies.len());
         self.energies.extend(bending);
@@ -262,6 +264,7 @@ fn shell_part(
         section,
         director_shape: director_shape(shell.bending),
         stencils: bending_stencils(&shell.surface.mesh, first_vertex, first_extra),
+        membranes: 0..0,
         bending: None,
     })
 }

@@ -46,11 +46,18 @@ impl Fnv {
 impl Model {
     /// Name of each shell, double layer, then obstacle, with a number that changes with any vertex or face of its mesh.
     pub fn fingerprints(&self) -> Vec<(String, u64)> {
-        let shells = self.shells.iter().map(|shell| {
+        let shells = self.shells.iter().enumerate().map(|(index, shell)| {
             let mut hash = Fnv::new();
             hash.add_surface(&shell.surface);
             hash.add_points(&shell.rest_positions);
             hash.add_composition(&shell.composition);
+            let heated = self.heated_shells.iter().filter(|part| part.shell == index);
+            let setups = heated.map(|part| &part.setup);
+            let textures = setups.flat_map(|s| [&s.loss_factors, &s.diffusivity_factors]);
+            let intensities = (self.heat_sources.iter()).flat_map(|source| &source.intensity);
+            for value in textures.chain(intensities).flatten() {
+                hash.add(&value.to_le_bytes());
+            }
             (shell.name.clone(), hash.0)
         });
         let layers = self.double_layers.iter().map(|layer| {

@@ -7,6 +7,7 @@ use crate::mesh::{EdgeId, FaceId, VertexId};
 pub use super::composition::{Composition, FaceValues, MaterialLaw, RestPrescription};
 pub use super::damping::DampingOptions;
 pub use super::expressions::{TextEnergy, TextValue};
+pub use super::heated::HeatedPart;
 pub use super::material_models::MaterialModel;
 pub use super::membrane_models::MembraneModel;
 pub use super::processes::{ProcessKind, RestProcess};
@@ -440,7 +441,9 @@ pub struct Model {
     pub shells: Vec<Shell>,
     /// Double layers that burn; a model has either these or shells.
     pub double_layers: Vec<DoubleLayerPart>,
-    /// Sources of heat, which act on double layers.
+    /// Shells that burn, of those above.
+    pub heated_shells: Vec<HeatedPart>,
+    /// Sources of heat, which act on double layers and on shells that burn.
     pub heat_sources: Vec<HeatSourcePart>,
     /// Obstacles.
     pub obstacles: Vec<Obstacle>,

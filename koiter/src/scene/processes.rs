@@ -14,7 +14,7 @@ use crate::energy::bending::{AngleProfile, Identity, Sine, Tangent, rest_forms_o
 use crate::integrate::{ShellPart, System};
 use crate::mesh::EdgeId;
 use crate::process::{
-    Crease, Curl, Fold, Measure, Process, RestState, Window, Yielding, on_cylinder,
+    Bent, Crease, Curl, Fold, Measure, Process, RestState, Window, Yielding, on_cylinder,
 };
 
 /// What changes the rest curvature of a shell over time.
@@ -134,6 +134,16 @@ impl Processes {
             rests: vec![None; model.shells.len()],
             models: model.shells.iter().map(|shell| shell.bending).collect(),
         };
+        for heated in &model.heated_shells {
+            let part = &system.space.shells[heated.shell];
+            let membranes = &system.elastic[part.membranes.clone()];
+            let strains = membranes.iter().filter_map(|energy| energy.rest_measures());
+            processes.rests[heated.shell] = Some(RestState {
+                curvature: measures(system, part).map_or(Vec::new(), |measures| measures.rest()),
+                flow: Vec::new(),
+                strain: strains.flat_map(|measures| measures.rest()).collect(),
+            });
+        }
         for process in &model.processes {
             let shell = &model.shells[process.shell];
             let name = shell.bending.info().name;
@@ -143,7 +153,7 @@ impl Processes {
             let made = make(&process.kind, shell, part, measures, q).map_err(refuse)?;
             processes.rests[process.shell].get_or_insert_with(|| RestState {
                 curvature: measures.rest(),
-                flow: Vec::new(),
+                ..RestState::default()
             });
             processes.acting.push(Acting {
                 process: made,
@@ -178,7 +188,9 @@ impl Processes {
         dt: f64,
     ) {
         for shell in 0..self.rests.len() {
-            let Some(rest) = &mut self.rests[shell] else {
+            let mut acts = self.acting.iter().map(|acting| acting.shell);
+            let Some(rest) = (self.rests[shell].as_mut()).filter(|_| acts.any(|of| of == shell))
+            else {
                 continue;
             };
             let part = &system.space.shells[shell];
@@ -206,7 +218,11 @@ impl Processes {
     /// Writes the rest values into the energies, and for display.
     fn write(&self, system: &mut System) {
         for (shell, rest) in self.rests.iter().enumerate() {
-            let (Some(rest), Some(index)) = (rest, system.space.shells[shell].bending) else {
+            let Some(rest) = rest else {
+                continue;
+            };
+            write_strains(system, shell, &rest.strain);
+            let Some(index) = system.space.shells[shell].bending else {
                 continue;
             };
             if let Some(measures) = system.elastic[index].rest_measures_mut() {
@@ -225,6 +241,11 @@ impl Processes {
         self.rests.iter().flatten().cloned().collect()
     }
 
+    /// The rest state of a shell, if something moves it.
+    pub(super) fn rest_mut(&mut self, shell: usize) -> Option<&mut RestState> {
+        self.rests[shell].as_mut()
+    }
+
     /// Goes back to other rest states.
     pub(super) fn restore(&mut self, system: &mut System, rests: &[RestState]) {
         for (rest, saved) in self.rests.iter_mut().flatten().zip(rests) {
@@ -234,12 +255,36 @@ impl Processes {
     }
 }
 
+/// Rest strains of the membranes of a shell, one after the other; none: they stay.
+fn write_strains(system: &mut System, shell: usize, strains: &[f64]) {
+    if strains.is_empty() {
+        return;
+    }
+    let mut left = strains;
+    for index in system.space.shells[shell].membranes.clone() {
+        if let Some(measures) = system.elastic[index].rest_measures_mut() {
+            let (own, others) = left.split_at(measures.rest().len());
+            measures.set_rest(own);
+            left = others;
+        }
+    }
+}
+
+/// How the measures of a bending model follow layers that shrink, from rest values at first.
+pub(super) fn bent(bending: BendingModel, first: Vec<f64>) -> Bent {
+    match (samples(bending), bending) {
+        (Some(samples), _) => Bent::Forms(first, samples),
+        (None, BendingModel::DsTheta | BendingModel::DsTan) => Bent::Hinges,
+        (None, _) => Bent::Nothing,
+    }
+}
+
 fn measures<'a>(system: &'a System, part: &ShellPart) -> Option<&'a dyn RestMeasures> {
     system.elastic[part.bending?].rest_measures()
 }
 
 /// Whether a model's measures are forms, and how many a face; else they are numbers.
-fn samples(bending: BendingModel) -> Option<usize> {
+pub(super) fn samples(bending: BendingModel) -> Option<usize> {
     match bending {
         BendingModel::Bac | BendingModel::Dcs | BendingModel::Dso | BendingModel::MeAverage => {
             Some(1)

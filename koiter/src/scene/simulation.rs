@@ -4,6 +4,7 @@ use super::arc_length;
 use super::assemble::{Assembly, BuildError, assemble, write_points};
 use super::burning::Burning;
 use super::display::{PartTopology, tessellate};
+use super::heated::Heated;
 use super::holds::Holds;
 use super::loads::set_factors;
 use super::model::{BendingModel, IntegratorKind, Model, Phase, Shell};
@@ -38,6 +39,7 @@ pub struct Simulation {
     /// What the load factor of arc length multiplies.
     pub(super) load_pattern: Option<LoadPattern>,
     pub(super) burning: Burning,
+    pub(super) heated: Heated,
 }
 
 /// Sizes of a simulation.
@@ -95,6 +97,11 @@ impl Simulation {
             obstacles,
             clamps,
         } = assemble(&model)?;
+        let heated =
+            Heated::new(&model, &system).map_err(|(shell, error)| BuildError::Burning {
+                shell: model.shells[shell].name.clone(),
+                error,
+            })?;
         let processes = Processes::new(&model, &mut system, &q)
             .map_err(|(process, error)| BuildError::Process { process, error })?;
         let phases = model.all_phases();
@@ -130,6 +137,7 @@ impl Simulation {
             share: 1.0,
             load_pattern,
             burning,
+            heated,
         })
     }
 
@@ -150,6 +158,12 @@ impl Simulation {
             return self.step_double_layers(dt);
         }
         self.enter_phase(self.state.step + 1);
+        let mut report = self.step_elastic(dt)?;
+        report.measures.extend(self.heated_measures());
+        Ok(report)
+    }
+
+    fn step_elastic(&mut self, dt: f64) -> Result<StepReport, StepError> {
         match self.phase().integrator {
             IntegratorKind::LinearStatic | IntegratorKind::ArcLength => {
                 let report = self.step_to(self.state.time + dt, dt)?;
@@ -184,12 +198,36 @@ impl Simulation {
         let phase = &self.phases[self.phase];
         (self.holds).switch(&self.model, phase, parts, &self.state.q, window);
         self.apply_schedules(time);
-        let rests = self.processes.rests();
+        let (rests, burnt) = (self.processes.rests(), self.heated.states());
+        let clock = std::time::Instant::now();
+        let heated = self.heated.advance(
+            &self.model,
+            &mut self.system,
+            &mut self.state,
+            &mut self.processes,
+            window,
+        );
+        if let Err((shell, error)) = heated {
+            self.heated.put_back(&mut self.system, &burnt);
+            self.processes.restore(&mut self.system, &rests);
+            return Err(StepError::NotFinite {
+                step: self.state.step + 1,
+                energy: "heat".to_owned(),
+                element: format!("{}: {error}", self.model.shells[shell].name),
+            });
+        }
+        let seconds = clock.elapsed().as_secs_f64();
         (self.processes).advance(&mut self.system, &self.state.q, window, dt);
         let prescribed = self.prescribed_at(time);
         let integrator = &mut self.integrators[self.phase];
-        let result = integrator.step(&mut self.system, &mut self.state, &prescribed, dt);
+        let mut result = integrator.step(&mut self.system, &mut self.state, &prescribed, dt);
+        if let Ok(report) = &mut result
+            && !self.heated.is_empty()
+        {
+            report.seconds.push(("heat", seconds));
+        }
         if result.is_err() {
+            self.heated.put_back(&mut self.system, &burnt);
             self.processes.restore(&mut self.system, &rests);
             self.apply_schedules(self.state.time);
         }
@@ -232,6 +270,7 @@ impl Simulation {
         };
         self.holds
             .prescribe(&self.model, shells, time, &mut prescribed);
+        self.heated.hold_the_rest(&self.system, &mut prescribed);
         let Prescribed { is_fixed, target } = &mut prescribed;
         for (dof, value) in held_by(&self.model, shells) {
             is_fixed[dof] = true;
@@ -383,55 +422,6 @@ impl Simulation {
     /// The surfaces to show: shells, then obstacles.
     pub fn parts(&self) -> &[PartTopology] {
         &self.parts
-    }
-
-    /// Values on the faces of all parts; zero on obstacles: largest principal Green strain, bending energy density
-    /// [J/m²], mean curvature [1/m], mean curvature at rest [1/m]; of double layers temperature [K] and mass ratio.
-    pub fn face_fields(&self) -> Vec<(&'static str, Vec<f32>)> {
-        let shells = &self.system.space.shells;
-        let obstacles = self.parts.iter().filter(|part| part.is_obstacle);
-        let on_obstacles: usize = obstacles.map(|part| part.faces.len()).sum();
-        if !self.burning.is_empty() {
-            return (self.burning_fields().into_iter())
-                .map(|(name, mut values)| {
-                    values.extend(std::iter::repeat_n(0.0, on_obstacles));
-                    (name, values)
-                })
-                .collect();
-        }
-        let q = &self.state.q;
-        let gather = |value: &dyn Fn(usize, usize) -> f64| -> Vec<f32> {
-            let on_shells = shells
-                .iter()
-                .enumerate()
-                .flat_map(|(s, part)| (0..part.mesh.num_faces()).map(move |f| (s, f)));
-            on_shells
-                .map(|(s, f)| value(s, f) as f32)
-                .chain(std::iter::repeat_n(0.0, on_obstacles))
-                .collect()
-        };
-        vec![
-            ("strain", gather(&|s, f| shells[s].largest_strain(f, q))),
-            (
-                "bending_energy_density",
-                gather(&|s, f| self.bending_density(s, f)),
-            ),
-            (
-                "mean_curvature",
-                gather(&|s, f| shells[s].mean_curvature(f, q)),
-            ),
-            (
-                "rest_curvature",
-                gather(&|s, f| 0.5 * (shells[s].rest_forms[f].x + shells[s].rest_forms[f].y)),
-            ),
-        ]
-    }
-
-    /// Bending energy per unit area of a face [J/m²] by the shown directors.
-    fn bending_density(&self, shell: usize, face: usize) -> f64 {
-        let part = &self.system.space.shells[shell];
-        let form = part.second_form(face, &self.state.q) - part.rest_forms[face];
-        part.section.bend(face, &form).density
     }
 
     /// Sizes and costs.

@@ -3,7 +3,7 @@
 use super::holds::Anchor;
 use super::simulation::Simulation;
 use crate::assembly::Energy;
-use crate::burning::BurningState;
+use crate::burning::{BurningState, HeatedState};
 use crate::integrate::{Memory, PathPoint, State};
 use crate::process::RestState;
 use crate::solve::{LinearWorkspace, WorkspaceHistory};
@@ -28,6 +28,8 @@ pub struct Snapshot {
     pub angles: Vec<Vec<f64>>,
     /// The double layers.
     pub double_layers: Vec<BurningState>,
+    /// Temperatures, masses and tears of the burning shells.
+    pub heated_shells: Vec<HeatedState>,
     /// What the linear solver keeps between steps.
     pub solver: WorkspaceHistory,
 }
@@ -52,6 +54,7 @@ impl Simulation {
             rests: self.processes.rests(),
             angles: self.system.branches(&self.state.q),
             double_layers: self.burning.states(),
+            heated_shells: self.heated.states(),
             solver: self.system.workspace.history(),
         }
     }
@@ -63,9 +66,14 @@ impl Simulation {
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), RestoreError> {
         let refuse = |reason| RestoreError { reason };
         self.check(snapshot).map_err(refuse)?;
-        (self.burning.restore(&snapshot.double_layers)).map_err(refuse)?;
-        self.system.workspace =
+        let workspace =
             LinearWorkspace::with_history(&snapshot.solver, &self.system.layout).map_err(refuse)?;
+        (self.burning.restore(&snapshot.double_layers)).map_err(refuse)?;
+        (self
+            .heated
+            .restore(&mut self.system, &snapshot.heated_shells))
+        .map_err(refuse)?;
+        self.system.workspace = workspace;
         self.state = snapshot.state.clone();
         self.processes.restore(&mut self.system, &snapshot.rests);
         self.system.restore_branches(&snapshot.angles);
@@ -123,7 +131,8 @@ impl Simulation {
     /// Rest states and angles are as many as those of this simulation.
     fn check_rests(&self, snapshot: &Snapshot) -> Result<(), String> {
         let sizes = |rests: &[RestState]| -> Vec<usize> {
-            rests.iter().map(|rest| rest.curvature.len()).collect()
+            let sizes = |rest: &RestState| [rest.curvature.len(), rest.strain.len()];
+            rests.iter().flat_map(sizes).collect()
         };
         let lengths = |lists: &[Vec<f64>]| -> Vec<usize> { lists.iter().map(Vec::len).collect() };
         let own = self.processes.rests();
@@ -134,7 +143,7 @@ impl Simulation {
         });
         let values = snapshot.rests.iter();
         let mut values = values
-            .flat_map(|rest| rest.curvature.iter().chain(&rest.flow))
+            .flat_map(|rest| rest.curvature.iter().chain(&rest.flow).chain(&rest.strain))
             .chain(snapshot.angles.iter().flatten());
         match () {
             () if sizes(&snapshot.rests) != sizes(&own) || !flows => {

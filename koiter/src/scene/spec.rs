@@ -40,6 +40,7 @@ pub use constraint::{BoundsSpec, ConstraintSpec, SelectSpec};
 pub use contact::{ContactSpec, PairSpec};
 pub use damping::DampingSpec;
 pub use discrete_shells::DiscreteShellsSpec;
+pub(in crate::scene) use double_layer::ROOM_TEMPERATURE;
 pub use double_layer::{
     BurningSpec, DoubleLayerSpec, HeatSourceSpec, ProjectionSpec, QuadGridSpec, QuadMeshSpec,
 };
@@ -103,7 +104,7 @@ pub struct SceneSpec {
     /// Shells that burn: two layers of springs; in place of elastic shells.
     #[serde(default)]
     pub double_layer: Vec<DoubleLayerSpec>,
-    /// What heats double layers.
+    /// What heats double layers, and shells that burn.
     #[serde(default)]
     pub heat_source: Vec<HeatSourceSpec>,
     /// Obstacles.
@@ -199,6 +200,12 @@ pub struct ShellSpec {
     /// `[11, 12, 22]` in the basis of the edges from a face's first corner to the second and third.
     #[serde(default)]
     pub faces: Option<String>,
+    /// Heat, mass loss, shrinkage and tearing; default: the shell does not burn.
+    #[serde(default)]
+    pub burning: Option<BurningSpec>,
+    /// Temperature at the start of a shell that burns [K]; default: 293.
+    #[serde(default)]
+    pub temperature: Option<f64>,
     /// A stretch that is never reached; default: none.
     #[serde(default)]
     pub strain_limit: Option<StrainLimitSpec>,

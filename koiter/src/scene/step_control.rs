@@ -7,6 +7,7 @@
 
 use super::holds::Holds;
 use super::simulation::Simulation;
+use crate::burning::HeatedState;
 use crate::integrate::{State, StepError, StepReport};
 use crate::process::RestState;
 
@@ -22,6 +23,7 @@ struct Before {
     turned: Vec<f64>,
     holds: Holds,
     rests: Vec<RestState>,
+    heated: Vec<HeatedState>,
     kappa: Option<f64>,
 }
 
@@ -89,6 +91,7 @@ impl Simulation {
             turned: self.system.loads.turned(),
             holds: self.holds.clone(),
             rests: self.processes.rests(),
+            heated: self.heated.states(),
             kappa: self.system.contact.as_ref().map(|contact| contact.kappa()),
         }
     }
@@ -97,6 +100,7 @@ impl Simulation {
         self.state = before.state.clone();
         (self.system.loads).restore_turned(&before.turned, &self.state.q);
         self.holds = before.holds.clone();
+        (self.heated).put_back(&mut self.system, &before.heated);
         self.processes.restore(&mut self.system, &before.rests);
         self.system.follow(&self.state.q);
         self.apply_schedules(self.state.time);

@@ -214,7 +214,9 @@ fn all_colours_at_once_diverge_where_successive_ones_do_not() {
     let mut x = perturbed(&shell);
     let options = unbounded();
     let sums = sweep_by_sweep(&mut all, &mut measure, &mut x, lengths, &options);
-    assert!(!(sums[7] < 100.0 * sums[0]), "{sums:?}");
+    // It may grow beyond all numbers, so the last sum may be none.
+    let finite = sums.iter().copied().filter(|sum| sum.is_finite());
+    assert!(finite.fold(0.0, f64::max) > 100.0 * sums[0], "{sums:?}");
 }
 
 #[test]

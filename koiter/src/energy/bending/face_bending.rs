@@ -41,6 +41,8 @@ pub trait FaceLaw: Send + Sync {
 /// Bending energy of one shell with the law `L`.
 pub struct FaceBending<L> {
     stencils: Vec<BendingStencil>,
+    /// Edges across which the neighbour has gone; empty: none.
+    cuts: Vec<[bool; 3]>,
     pub(super) law: L,
 }
 
@@ -49,12 +51,19 @@ type Corner = Option<(DeformedHinge, HingeFunction)>;
 
 impl<L: FaceLaw> FaceBending<L> {
     pub(super) fn with_law(stencils: Vec<BendingStencil>, law: L) -> Self {
-        Self { stencils, law }
+        let cuts = Vec::new();
+        Self {
+            stencils,
+            cuts,
+            law,
+        }
     }
 
     fn corners(&self, face: usize, q: &SVector<f64, 18>) -> [Corner; 3] {
         std::array::from_fn(|c| {
-            self.stencils[face].across[c]?;
+            if !self.has_neighbor(face, c) {
+                return None;
+            }
             let point = |i: usize| Vec3::new(q[3 * i], q[3 * i + 1], q[3 * i + 2]);
             let hinge = DeformedHinge::new(&nodes(c).map(point));
             let curvature = self.law.curvature(face, c, &hinge);
@@ -62,9 +71,10 @@ impl<L: FaceLaw> FaceBending<L> {
         })
     }
 
-    /// Whether edge `c` of the face has a neighbour.
+    /// Whether edge `c` of the face has a neighbour that is there.
     pub(super) fn has_neighbor(&self, face: usize, c: usize) -> bool {
-        self.stencils[face].across[c].is_some()
+        let is_cut = self.cuts.get(face).is_some_and(|edges| edges[c]);
+        self.stencils[face].across[c].is_some() && !is_cut
     }
 
     /// The q_c.
@@ -165,6 +175,11 @@ impl<L: FaceLaw> LocalEnergy<18, 6> for FaceBending<L> {
     fn set_rest(&mut self, face: usize, measures: &[f64]) {
         self.law
             .set_rest(face, Vector3::from_column_slice(measures));
+    }
+
+    fn set_cut(&mut self, face: usize, edges: [bool; 3]) {
+        self.cuts.resize(self.stencils.len(), [false; 3]);
+        self.cuts[face] = edges;
     }
 
     fn describe(&self, face: usize) -> String {

@@ -70,6 +70,8 @@ pub struct MidEdgeBending<P, S> {
     frames: Vec<RestFrame>,
     rest_forms: Vec<Vector3<f64>>,
     section: S,
+    /// Edges across which the neighbour has gone; empty: none.
+    cuts: Vec<[bool; 3]>,
     profile: PhantomData<P>,
 }
 
@@ -86,6 +88,7 @@ impl<P: AngleProfile, S: Section> MidEdgeBending<P, S> {
             frames,
             rest_forms,
             section,
+            cuts: Vec::new(),
             profile: PhantomData,
         }
     }
@@ -121,8 +124,10 @@ impl<P: AngleProfile, S: Section> MidEdgeBending<P, S> {
         let point = |i: usize| Vec3::new(q[3 * i], q[3 * i + 1], q[3 * i + 2]);
         let (a, b) = (point((c + 1) % 3), point((c + 2) % 3));
         let wing = Wing::new(&a, &b, &point(c));
+        let is_cut = self.cuts.get(stencil).is_some_and(|edges| edges[c]);
         let stencil = &self.stencils[stencil];
-        let neighbor = stencil.across[c].map(|_| Wing::new(&b, &a, &point(3 + c)));
+        let across = stencil.across[c].filter(|_| !is_cut);
+        let neighbor = across.map(|_| Wing::new(&b, &a, &point(3 + c)));
         let theta = neighbor
             .as_ref()
             .map_or(0.0, |other| hinge_angle(&wing, other));
@@ -392,6 +397,11 @@ impl<P: AngleProfile, S: Section> LocalEnergy<21, 9> for MidEdgeBending<P, S> {
 
     fn set_rest(&mut self, stencil: usize, measures: &[f64]) {
         self.rest_forms[stencil] = Vector3::from_column_slice(measures);
+    }
+
+    fn set_cut(&mut self, stencil: usize, edges: [bool; 3]) {
+        self.cuts.resize(self.stencils.len(), [false; 3]);
+        self.cuts[stencil] = edges;
     }
 
     fn describe(&self, stencil: usize) -> String {

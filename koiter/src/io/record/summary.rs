@@ -42,9 +42,12 @@ pub struct Summary {
     pub hessian_nonzeros: usize,
     /// Most memory that the program had at a time, where it is known.
     pub peak_memory_bytes: Option<u64>,
-    /// Figures of double layers after the last step.
+    /// Figures of what burns after the last step.
     #[serde(serialize_with = "as_map", skip_serializing_if = "Vec::is_empty")]
     pub measures: Vec<(&'static str, f64)>,
+    /// Highest temperature of what burns at the ends of all steps since the run was begun or taken up again [K].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hottest: Option<f64>,
     /// Last values of the probes by name.
     pub probes: Value,
     /// Whether all steps converged.
@@ -70,6 +73,7 @@ impl Summary {
             hessian_nonzeros: stats.hessian_nonzeros,
             peak_memory_bytes: None,
             measures: Vec::new(),
+            hottest: None,
             probes: Value::Null,
             converged: true,
         }
@@ -87,6 +91,9 @@ impl Summary {
         }
         self.converged &= report.converged;
         self.measures.clone_from(&report.measures);
+        if let Some(temperature) = self.measure("highest_temperature") {
+            self.hottest = Some(self.hottest.map_or(temperature, |t| t.max(temperature)));
+        }
         for &(part, seconds) in &report.seconds {
             match self
                 .seconds_by_part
@@ -97,6 +104,17 @@ impl Summary {
                 None => self.seconds_by_part.push((part.to_owned(), seconds)),
             }
         }
+    }
+
+    fn measure(&self, name: &str) -> Option<f64> {
+        let found = self.measures.iter().find(|(known, _)| *known == name);
+        found.map(|(_, value)| *value)
+    }
+
+    /// The highest temperature of a run in which nothing burnt though something could have [K].
+    pub fn never_ignited(&self) -> Option<f64> {
+        let is_whole = self.measure("mean_mass_ratio") == Some(1.0);
+        self.hottest.filter(|_| is_whole)
     }
 
     /// Goes on after `step` steps that added up to `totals`.
@@ -134,6 +152,24 @@ impl Summary {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_run_in_which_nothing_burnt_knows_how_warm_it_was() {
+        let step = |ratio, temperature| StepReport {
+            measures: vec![
+                ("mean_mass_ratio", ratio),
+                ("highest_temperature", temperature),
+            ],
+            ..StepReport::default()
+        };
+        let mut summary = Summary::new(&SystemStats::default(), 3, true);
+        assert_eq!(summary.never_ignited(), None);
+        summary.add(&step(1.0, 480.0));
+        summary.add(&step(1.0, 320.0));
+        assert_eq!(summary.never_ignited(), Some(480.0));
+        summary.add(&step(0.99, 520.0));
+        assert_eq!(summary.never_ignited(), None);
+    }
 
     #[test]
     fn a_summary_adds_steps_up() {

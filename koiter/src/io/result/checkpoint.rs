@@ -11,9 +11,10 @@
 //!    2 accelerations of the equation of motion (Newmark): f64 longest stable step  u64 steps since it was estimated
 //!      f64 largest kinetic energy
 //! list of anchors: list of u64 constraints, f64 time, list of f64: q when they began
-//! list of rest states: list of f64 rest curvatures, list of f64 flows
+//! list of rest states: list of f64 rest curvatures, list of f64 flows, list of f64 rest strains
 //! list of lists of f64: angles of hinges
 //! list of double layers: lists of f64: positions, velocities, temperatures, mass ratios
+//! list of burning shells: lists of f64: temperatures, mass ratios; list of u32: torn faces
 //! list of u32 × 2: couplings by contacts  list of u32: elimination order  u64 factor entries when it was made
 //! u64 × 4 Newton iterations, steps not converged, steps in parts, intersections  f64 × 2 smallest gap, seconds
 //! list of parts of the run: text name, f64 seconds  list of f64: last values of the probes
@@ -28,7 +29,7 @@ use super::CHECKPOINT;
 use super::error::{ResultError, read_if_there};
 use super::topology_file::checked_body;
 use crate::Vec3;
-use crate::burning::BurningState;
+use crate::burning::{BurningState, HeatedState};
 use crate::integrate::{Memory, PathPoint, StableStep, State};
 use crate::io::bytes::{ByteReader, Endian};
 use crate::io::checksum::crc32;
@@ -37,7 +38,7 @@ use crate::scene::{Anchor, Snapshot};
 use crate::solve::WorkspaceHistory;
 
 const MAGIC: &[u8; 8] = b"KOITERCP";
-const FORMAT: u32 = 8;
+const FORMAT: u32 = 9;
 
 /// All that is needed to go on with a run to the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,6 +165,7 @@ impl Checkpoint {
         out.list(&snapshot.rests, |out, rest| {
             out.numbers(&rest.curvature);
             out.numbers(&rest.flow);
+            out.numbers(&rest.strain);
         });
         out.list(&snapshot.angles, |out, angles| out.numbers(angles));
         out.list(&snapshot.double_layers, |out, layer| {
@@ -171,6 +173,11 @@ impl Checkpoint {
             out.vectors(&layer.velocities);
             out.numbers(&layer.temperatures);
             out.numbers(&layer.mass_ratios);
+        });
+        out.list(&snapshot.heated_shells, |out, shell| {
+            out.numbers(&shell.temperatures);
+            out.numbers(&shell.mass_ratios);
+            out.list(&shell.torn, |out, face| out.u32(*face));
         });
         let WorkspaceHistory {
             changing_pairs,
@@ -289,10 +296,11 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
     let share = reader.f64()?;
     state.memory = memory(reader)?;
     let anchors = list(reader, 24, anchor)?;
-    let rests = list(reader, 16, |reader| {
+    let rests = list(reader, 24, |reader| {
         Some(RestState {
             curvature: numbers(reader)?,
             flow: numbers(reader)?,
+            strain: numbers(reader)?,
         })
     })?;
     let angles = list(reader, 8, numbers)?;
@@ -302,6 +310,13 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
             velocities: vectors(reader)?,
             temperatures: numbers(reader)?,
             mass_ratios: numbers(reader)?,
+        })
+    })?;
+    let heated_shells = list(reader, 24, |reader| {
+        Some(HeatedState {
+            temperatures: numbers(reader)?,
+            mass_ratios: numbers(reader)?,
+            torn: list(reader, 4, ByteReader::u32)?,
         })
     })?;
     let solver = WorkspaceHistory {
@@ -328,6 +343,7 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
         rests,
         angles,
         double_layers,
+        heated_shells,
         solver,
     };
     Some(Checkpoint {

@@ -4,12 +4,13 @@ use super::{Builder, mesh_error, move_point};
 use crate::Vec3;
 use crate::burning::{
     BurningError, BurningOptions, BurningSetup, BurningShell, DoubleLayer, ProjectionOptions,
-    QuadMesh, QuadMeshError,
+    QuadMesh, QuadMeshError, Side, Texture,
 };
 use crate::mesh::{Surface, SurfaceOptions};
 use crate::scene::burning::{DoubleLayerPart, HeatSourcePart, Held};
 use crate::scene::document::suggest;
 use crate::scene::error::{SceneError, SceneErrorKind as Kind};
+use crate::scene::heated::HeatedPart;
 use crate::scene::placement::ShapeError;
 use crate::scene::selection::select;
 use crate::scene::spec::{BurningSpec, DoubleLayerSpec, HeatSourceSpec, QuadMeshSpec};
@@ -27,18 +28,28 @@ impl Builder<'_> {
     pub(super) fn heat_sources(
         &self,
         layers: &[DoubleLayerPart],
+        heated: &[HeatedPart],
     ) -> Result<Vec<HeatSourcePart>, SceneError> {
         let source = |spec: &HeatSourceSpec| -> Result<HeatSourcePart, SceneError> {
             let path = format!("heat_source.{}.texture", spec.name);
             let meshes = layers.iter().map(|layer| &layer.setup.shell);
-            let intensity = meshes.map(|shell| self.factors(&path, spec.texture.as_deref(), shell));
+            let on_layers = meshes.map(|shell| self.factors(&path, spec.texture.as_deref(), shell));
+            let mut intensity: Vec<Vec<f64>> = on_layers.collect::<Result<_, _>>()?;
+            for (factors, layer) in intensity.iter_mut().zip(layers) {
+                keep_side(spec.side, &layer.setup.shell, factors);
+            }
+            for part in heated {
+                let surface = &part.setup.rest;
+                intensity.push(self.shell_factors(&path, spec.texture.as_deref(), surface)?);
+            }
             Ok(HeatSourcePart {
                 name: spec.name.clone(),
                 ball: (spec.sphere.as_ref()).map(|s| (Vec3::from(s.center), s.radius)),
                 motion: spec.motion.to_motion(),
                 temperature: spec.temperature,
                 rate: spec.rate,
-                intensity: intensity.collect::<Result<_, _>>()?,
+                side: spec.side,
+                intensity,
             })
         };
         self.spec.heat_source.iter().map(source).collect()
@@ -117,15 +128,22 @@ impl Builder<'_> {
         file: Option<&str>,
         shell: &DoubleLayer,
     ) -> Result<Vec<f64>, SceneError> {
-        let Some(file) = file else {
+        let Some(texture) = self.texture(path, file)? else {
             return Ok(Vec::new());
         };
-        let texture = (self.source.read_texture(file))
-            .map_err(|error| mesh_error(ShapeError::File(error), path))?;
         let at_vertices = texture
             .at_vertices(&shell.mesh)
             .map_err(|error| SceneError::new(Kind::Mesh, error.to_string()).inside(path))?;
         Ok(shell.on_particles(&at_vertices))
+    }
+
+    pub(super) fn texture(
+        &self,
+        path: &str,
+        file: Option<&str>,
+    ) -> Result<Option<Texture>, SceneError> {
+        let read = file.map(|file| self.source.read_texture(file)).transpose();
+        read.map_err(|error| mesh_error(ShapeError::File(error), path))
     }
 
     fn held(&self, spec: &DoubleLayerSpec, mesh: &QuadMesh) -> Result<Vec<Held>, SceneError> {
@@ -177,7 +195,20 @@ fn triangles(mesh: &QuadMesh) -> Result<Surface, SceneError> {
         .map_err(|error| SceneError::new(Kind::Mesh, error.to_string()))
 }
 
-fn burning_options(spec: &BurningSpec) -> BurningOptions {
+/// A source on one side leaves the particles of the other layer alone.
+fn keep_side(side: Side, shell: &DoubleLayer, factors: &mut Vec<f64>) {
+    if side == Side::Both {
+        return;
+    }
+    factors.resize(shell.particles.len(), 1.0);
+    let (corners, lattice) = factors.split_at_mut(shell.num_corners());
+    match side.heats(Side::Top) {
+        true => corners.fill(0.0),
+        false => lattice.fill(0.0),
+    }
+}
+
+pub(super) fn burning_options(spec: &BurningSpec) -> BurningOptions {
     BurningOptions {
         ignition_temperature: spec.ignition_temperature,
         loss_rate: spec.loss_rate,
@@ -190,7 +221,7 @@ fn burning_options(spec: &BurningSpec) -> BurningOptions {
 }
 
 /// A number out of its range, at its key.
-fn number_error(error: &BurningError, path: &str) -> SceneError {
+pub(super) fn number_error(error: &BurningError, path: &str) -> SceneError {
     let key = match error {
         BurningError::Value { what, .. } => match *what {
             "thickness" | "area_density" | "temperature" | "damping" => format!("{path}.{what}"),

@@ -192,6 +192,7 @@ impl Measurement<'_> {
         Model {
             shells: vec![shell],
             double_layers: Vec::new(),
+            heated_shells: Vec::new(),
             heat_sources: Vec::new(),
             obstacles: Vec::new(),
             constraints: Vec::new(),

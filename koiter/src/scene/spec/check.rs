@@ -2,6 +2,7 @@
 
 mod double_layer;
 mod friction;
+mod heated;
 mod loads;
 mod motion;
 mod obstacle;
@@ -42,6 +43,7 @@ pub(super) fn check(spec: &SceneSpec) -> Checked {
         ));
     }
     double_layer::check_double_layers(spec)?;
+    heated::check_heated(spec)?;
     if let Some(schedule) = &spec.gravity_scale {
         check_schedule("gravity_scale", schedule)?;
     }

@@ -1,10 +1,10 @@
-//! `[[double_layer]]` and `[[heat_source]]`: cloth and paper that burn.
+//! `[[double_layer]]`, `[shell.burning]` and `[[heat_source]]`: cloth and paper that burn.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::shape::{RotationSpec, SphereSpec, TorusSpec};
-use crate::burning::ProjectionMethod;
+use crate::burning::{ProjectionMethod, Side};
 use crate::scene::schedule::MotionSpec;
 
 /// `[[double_layer]]`: a shell of two layers of springs on a mesh of quads, which heats, shrinks and burns.
@@ -81,7 +81,7 @@ pub struct QuadGridSpec {
     pub cells: [usize; 2],
 }
 
-/// `[double_layer.burning]`.
+/// `[double_layer.burning]` and `[shell.burning]`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BurningSpec {
@@ -105,7 +105,14 @@ pub struct BurningSpec {
     pub shrinkage_exponent: f64,
     /// Most by which a mass ratio changes before the shell is moved: larger steps are taken in parts.
     pub largest_change: f64,
-    /// PNG file whose brightness scales `loss_rate`, laid on by the texture coordinates of the mesh.
+    /// Shells: rate at which top and bottom layer take on each other's temperature [1/s]; default: `π² α / (2 h²)`, with
+    /// diffusivity α and thickness h.
+    pub exchange_rate: Option<f64>,
+    /// Shells: tensile strength [Pa], which falls with the mass: where the largest principal stress is above it, faces tear;
+    /// default: none do.
+    pub strength: Option<f64>,
+    /// PNG file whose brightness scales `loss_rate`, laid on by the texture coordinates of the mesh; on a shell over the two
+    /// longest sides of the box around its start shape.
     pub loss_texture: Option<String>,
     /// PNG file whose brightness scales `diffusivity`.
     pub diffusivity_texture: Option<String>,
@@ -125,6 +132,8 @@ impl Default for BurningSpec {
             smallest_mass: options.smallest_mass,
             shrinkage_exponent: options.shrinkage_exponent,
             largest_change: options.largest_change,
+            exchange_rate: None,
+            strength: None,
             loss_texture: None,
             diffusivity_texture: None,
         }
@@ -182,13 +191,19 @@ pub struct HeatSourceSpec {
     pub temperature: f64,
     /// Rate at which the shell takes it on [1/s].
     pub rate: f64,
+    /// Which layers it heats: both, the top one, where normals point, or the bottom one.
+    #[serde(default)]
+    pub side: Side,
     /// PNG file whose brightness scales `rate`, laid on by the texture coordinates of the mesh.
     #[serde(default)]
     pub texture: Option<String>,
 }
 
+/// 20 °C [K].
+pub(in crate::scene) const ROOM_TEMPERATURE: f64 = 293.0;
+
 fn room_temperature() -> f64 {
-    293.0
+    ROOM_TEMPERATURE
 }
 
 fn one() -> f64 {

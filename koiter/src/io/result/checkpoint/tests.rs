@@ -34,6 +34,7 @@ fn checkpoint() -> Checkpoint {
             rests: vec![RestState {
                 curvature: vec![0.25, -3.5],
                 flow: vec![0.5, 0.0],
+                strain: vec![-0.125],
             }],
             angles: vec![vec![3.5, -0.25], vec![]],
             double_layers: vec![BurningState {
@@ -41,6 +42,11 @@ fn checkpoint() -> Checkpoint {
                 velocities: vec![Vec3::zeros(), Vec3::x()],
                 temperatures: vec![293.0, 506.5],
                 mass_ratios: vec![1.0, 0.625],
+            }],
+            heated_shells: vec![HeatedState {
+                temperatures: vec![293.0, 600.0],
+                mass_ratios: vec![1.0, 0.75],
+                torn: vec![3, 17],
             }],
             solver: WorkspaceHistory {
                 changing_pairs: vec![[0, 1], [0, 7]],

@@ -1,9 +1,11 @@
 //! Checks of double layers and sources of heat.
 
+use super::heated::burns;
 use super::motion::check_motion;
 use super::{Checked, all_finite, check_rotation, error, exactly_one, positive, unique};
+use crate::burning::ProjectionMethod;
 use crate::scene::error::SceneErrorKind as Kind;
-use crate::scene::spec::{DoubleLayerSpec, HeatSourceSpec, SceneSpec};
+use crate::scene::spec::{DoubleLayerSpec, HeatSourceSpec, ProjectionSpec, SceneSpec};
 
 /// Checks what a scene with double layers has beside them.
 pub(super) fn check_double_layers(spec: &SceneSpec) -> Checked {
@@ -25,9 +27,11 @@ pub(super) fn check_double_layers(spec: &SceneSpec) -> Checked {
         check_source(&format!("heat_source.{}", source.name), source)?;
     }
     match (spec.double_layer.first(), spec.heat_source.first()) {
+        (None, Some(_)) if burns(spec) => Ok(()),
         (None, Some(source)) => {
             let message =
-                "a source of heat acts on double layers, and the scene has none".to_owned();
+                "a source of heat acts on double layers and on shells with [shell.burning], and the scene has neither"
+                    .to_owned();
             Err(error(
                 Kind::Conflict,
                 &format!("heat_source.{}", source.name),
@@ -107,6 +111,29 @@ fn check_layer(path: &str, layer: &DoubleLayerSpec) -> Checked {
                 &format!("{path}.projection.{key}"),
                 message,
             ));
+        }
+    }
+    let (projection, usual) = (&layer.projection, ProjectionSpec::default());
+    for (key, given) in [
+        ("weights", projection.weights != usual.weights),
+        ("iterations", projection.iterations != usual.iterations),
+    ] {
+        if given && projection.method == ProjectionMethod::Global {
+            let message = format!(
+                "'{key}' is a number of successive sweeps: the global method has a 'compliance', and solves directly"
+            );
+            let path = format!("{path}.projection.{key}");
+            return Err(error(Kind::Conflict, &path, message));
+        }
+    }
+    for (key, given) in [
+        ("exchange_rate", layer.burning.exchange_rate.is_some()),
+        ("strength", layer.burning.strength.is_some()),
+    ] {
+        if given {
+            let message = format!("a double layer has no '{key}': it is a key of [shell.burning]");
+            let path = format!("{path}.burning.{key}");
+            return Err(error(Kind::Conflict, &path, message));
         }
     }
     positive(
