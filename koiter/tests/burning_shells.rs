@@ -161,11 +161,11 @@ material = { young = 1e6, poisson = 0.3, density = 300 }
 thickness = 1e-3
 bending = "bac"
 damping.mass = 2
-burning = { diffusivity = 2e-6, loss_rate = 0.03 }
+burning = { diffusivity = 2e-6, loss_rate = 0.03, shrinkage_exponent = 0.333 }
 
 [[heat_source]]
 name = "flame"
-sphere = { center = [0.3, 0, 0.02], radius = 0.04 }
+sphere = { center = [0.3, 0, 0], radius = 0.04 }
 motion.translate = [[0, [-0.2, 0, 0]], [0.6, [-0.6, 0, 0]]]
 temperature = 1000
 rate = 25
@@ -198,7 +198,7 @@ fn a_hanging_sheet_burns_in_two_and_its_lower_half_falls() {
     for bending in ["bac", "ds-theta"] {
         let bending = format!("shell.cloth.bending={bending}");
         let mut simulation = simulation(SHEET, &[&bending]);
-        run(&mut simulation, 90);
+        run(&mut simulation, 36);
         assert_eq!(measure(&simulation, "pieces"), 2.0, "{bending}");
         let kept = measure(&simulation, "kept_area");
         assert!(kept > 0.4 && kept < 0.9, "{kept}");
@@ -208,10 +208,10 @@ fn a_hanging_sheet_burns_in_two_and_its_lower_half_falls() {
             lower.iter().map(|x| x.z).sum::<f64>() / 13.0
         };
         let before = lowest(&simulation);
-        run(&mut simulation, 10);
-        // A tenth of a second of free fall, and the speed it has by then.
+        run(&mut simulation, 8);
+        // 0.08 s of free fall, 3 cm, and the speed it has by then.
         assert!(
-            lowest(&simulation) < before - 0.04,
+            lowest(&simulation) < before - 0.05,
             "{before} {}",
             lowest(&simulation)
         );
@@ -229,6 +229,8 @@ fn a_hanging_sheet_burns_in_two_and_its_lower_half_falls() {
 #[test]
 fn a_saved_run_goes_on_to_the_same_bits() {
     let tearing = [
+        "heat_source.flame.sphere.center=[0.3,0,0.02]",
+        "shell.cloth.burning.shrinkage_exponent=1",
         "shell.cloth.burning.strength=4e3",
         "shell.cloth.bending=dcs",
     ];
@@ -262,11 +264,15 @@ fn a_sheet_that_is_too_weak_for_its_weight_tears_off_its_rail() {
     let mut strong = simulation(SHEET, &[cold[0], "shell.cloth.burning.strength=4e3"]);
     run(&mut strong, 60);
     assert_eq!(measure(&strong, "torn_faces"), 0.0);
-    let mut weak = simulation(SHEET, &[cold[0], "shell.cloth.burning.strength=300"]);
-    run(&mut weak, 60);
-    assert!(measure(&weak, "torn_faces") > 0.0);
-    assert!(measure(&weak, "pieces") > 1.0);
+    let mut weak = simulation(SHEET, &[cold[0], "shell.cloth.burning.strength=560"]);
+    run(&mut weak, 20);
+    // The row of faces at the rail, and some of the next, which feel how the others go.
+    let torn = measure(&weak, "torn_faces");
+    assert!((24.0..72.0).contains(&torn), "{torn}");
     assert_eq!(measure(&weak, "mean_mass_ratio"), 1.0);
+    // A free fall of 0.2 s would be 0.2 m; it began later, and air holds it up.
+    let [weak, strong] = [weak, strong].map(|of| of.shell_positions(0)[6].z);
+    assert!(weak < strong - 0.1, "{weak} {strong}");
 }
 
 #[test]

@@ -173,8 +173,9 @@ pub trait RestMeasures {
     /// Φ becomes this factor times what it was made as.
     fn set_factor(&mut self, factor: f64);
     /// Elements that are not there give nothing from now on; where elements are faces, `cuts` says across which of their
-    /// edges a neighbour has gone: they end there as at a boundary.
-    fn set_present(&mut self, is_there: &[bool], cuts: &[[bool; 3]]);
+    /// edges a neighbour has gone: they end there as at a boundary. Energies of whole shells and of stars of vertices take no
+    /// notice: shells that burn have none.
+    fn set_present(&mut self, _is_there: &[bool], _cuts: &[[bool; 3]]) {}
 }
 
 /// The matrix `weight · vector vectorᵀ`.
