@@ -54,7 +54,7 @@ mod tests {
         let mirrored: Vec<Vec3> = from.iter().map(|x| Vec3::new(-x.x, x.y, x.z)).collect();
         assert!(rigid_misfit(&from, &mirrored) > 0.1);
         assert_eq!(rigid_misfit(&[], &[]), 0.0);
-        assert!(rigid_misfit(&from, &vec![Vec3::repeat(f64::NAN); 7]).is_nan());
+        assert!(rigid_misfit(&from, &[Vec3::repeat(f64::NAN); 7]).is_nan());
     }
 
     #[test]
