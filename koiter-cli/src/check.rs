@@ -1,7 +1,9 @@
 //! `koiter check`: reads everything, runs nothing.
 
+mod bezier;
 mod result;
 
+use bezier::BezierReport;
 pub(crate) use result::bodies;
 
 use crate::output::say;
@@ -34,6 +36,10 @@ struct Report {
     shells: Vec<ShellReport>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     double_layers: Vec<DoubleLayerReport>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    bezier_shells: Vec<BezierReport>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    procedures: Vec<String>,
     obstacles: Vec<String>,
     constraints: usize,
     loads: Vec<LoadReport>,
@@ -161,7 +167,7 @@ impl LoadReport {
         let total = model.load_total(load);
         let mut report = Self {
             name: load.name.clone(),
-            shell: model.shells[load.shell].name.clone(),
+            shell: model.observed_shell(load.shell).name.clone(),
             words: total.to_string(),
             ..Self::default()
         };
@@ -218,8 +224,19 @@ fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(),
         .double_layers
         .iter()
         .map(|layer| layer.held.len());
-    let constraints = scene.model.constraints.len() + held.sum::<usize>();
-    let loads = scene.model.loads.iter();
+    let bezier = scene.model.bezier.as_ref();
+    let of_bezier = bezier.map_or(0, |bezier| bezier.constraints.len());
+    let constraints = scene.model.constraints.len() + held.sum::<usize>() + of_bezier;
+    let bezier_shells = bezier.iter().flat_map(|model| {
+        let parts = model.parts.iter();
+        parts.map(|part| BezierReport::new(model, part))
+    });
+    let bezier_shells = bezier_shells.collect();
+    let procedures = bezier.iter().flat_map(|bezier| &bezier.procedures);
+    let procedures = procedures.map(|p| format!("{} at {} s", p.name, p.at));
+    let procedures = procedures.collect();
+    let loads = bezier.map_or(&scene.model.loads, |bezier| &bezier.loads);
+    let loads = loads.iter();
     let loads = loads.map(|load| LoadReport::new(&scene.model, load));
     let loads = loads.collect();
     let expressions = scene.model.energies.iter();
@@ -247,6 +264,8 @@ fn check_scene(scene: &SceneArguments, arguments: &CheckArguments) -> Result<(),
         phases,
         shells,
         double_layers,
+        bezier_shells,
+        procedures,
         obstacles,
         constraints,
         loads,
@@ -323,6 +342,10 @@ impl Report {
                 decimal(layer.mass),
                 layer.held
             );
+        }
+        self.bezier_shells.iter().for_each(BezierReport::print);
+        if !self.procedures.is_empty() {
+            say!("procedures: {}", self.procedures.join(", "));
         }
         if !self.obstacles.is_empty() {
             say!("obstacles: {}", self.obstacles.join(", "));

@@ -141,7 +141,7 @@ mod tests {
         let schema = koiter::scene::json_schema();
         let tables = [
             // Loads and planes of symmetry are for engineers: the scenes rolled-strip and hinged-roof show them. Processes,
-            // energies of one's own and what burns have pages of their own.
+            // energies of one's own, what burns and what is cut have pages of their own.
             (
                 &schema["properties"],
                 &[
@@ -151,6 +151,8 @@ mod tests {
                     "process",
                     "double_layer",
                     "heat_source",
+                    "bezier_shell",
+                    "procedure",
                 ][..],
             ),
             // Names for shapes that are not the sheet's start, and for experts.

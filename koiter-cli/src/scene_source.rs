@@ -159,6 +159,26 @@ const SHIPPED: &[Shipped] = &[
         meshes: &[],
     },
     Shipped {
+        name: "scordelis-lo-bezier",
+        text: include_str!("../../scenes/scordelis-lo-bezier/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "pinched-hemisphere-bezier",
+        text: include_str!("../../scenes/pinched-hemisphere-bezier/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "vessel-patch",
+        text: include_str!("../../scenes/vessel-patch/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
+        name: "head-through-ellipsoid",
+        text: include_str!("../../scenes/head-through-ellipsoid/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
         name: "your-own-mesh",
         text: include_str!("../../scenes/your-own-mesh/scene.toml"),
         meshes: &[(

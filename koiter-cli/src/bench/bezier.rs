@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use koiter::bezier::problems::{Problem, RoofEdges, hemisphere, roof};
+use koiter::bezier::problems::{PlateMesh, Problem, RoofEdges, clamped_plate, hemisphere, roof};
 use koiter::bezier::{BezierError, ElementKind};
 use koiter::scene::nearest;
 use koiter_render::{Arrangement, Chart, Line, Marker, Panel, Series, Style};
@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::{output_path, plot};
 
 /// Name, what it is about, and the limit of the thin shell [m].
-const PROBLEMS: [(&str, &str, f64); 3] = [
+const PROBLEMS: [(&str, &str, f64); 6] = [
     (
         "roof-clamped",
         "roof, clamped: middle of the free edge",
@@ -31,7 +31,21 @@ const PROBLEMS: [(&str, &str, f64); 3] = [
         "pinched hemisphere, P = 2: at a force",
         0.093_52,
     ),
+    ("plate-uniform", "clamped plate, equal cells: middle", PLATE),
+    (
+        "plate-alternating",
+        "clamped plate, alternating diagonals: middle",
+        PLATE,
+    ),
+    (
+        "plate-jittered",
+        "clamped plate, jittered vertices: middle",
+        PLATE,
+    ),
 ];
+
+/// Timoshenko and Woinowsky-Krieger, "Theory of Plates and Shells" (1959), table 35: more digits by series.
+const PLATE: f64 = 1.265_32e-3;
 
 /// `benchmarks/bezier-shell/SOURCE.md`.
 const TOLERANCE: f64 = 0.01;
@@ -104,6 +118,9 @@ fn problem(name: &str, kind: ElementKind, cells: usize) -> Result<Problem, Bezie
     match name {
         "roof-clamped" => roof(kind, cells, RoofEdges::Clamped),
         "roof-original" => roof(kind, cells, RoofEdges::Diaphragms),
+        "plate-uniform" => clamped_plate(kind, cells, PlateMesh::Uniform),
+        "plate-alternating" => clamped_plate(kind, cells, PlateMesh::Alternating),
+        "plate-jittered" => clamped_plate(kind, cells, PlateMesh::Jittered),
         _ => hemisphere(kind, cells, 2.0),
     }
 }
@@ -128,10 +145,17 @@ impl Measured {
             value: number(row[3]),
             is_judged: row[4] != "other",
         });
-        let reaches_limit = self.kind != ElementKind::BezierPaper && self.cells >= FINEST;
-        of_table.or(reaches_limit.then_some(Published {
-            value: PROBLEMS[self.problem].2,
-            is_judged: true,
+        let (name, _, limit) = PROBLEMS[self.problem];
+        // Cubic triangles fail the patch test on irregular meshes: by how much is what these plates show.
+        let is_irregular = name == "plate-alternating" || name == "plate-jittered";
+        let converges = match self.kind {
+            ElementKind::DktAndes => true,
+            ElementKind::Bezier => !is_irregular,
+            _ => false,
+        };
+        of_table.or((self.cells >= FINEST).then_some(Published {
+            value: limit,
+            is_judged: converges,
         }))
     }
 

@@ -4,7 +4,7 @@ use nalgebra::UnitQuaternion;
 
 use super::map::SurfacePoint;
 use super::pose::NODE_UNKNOWNS;
-use super::{BezierShell, DeadLoad, MappedSurface, Pose, RestElement, Supports};
+use super::{BezierShell, DeadLoad, Pose, RestElement, Supports};
 use crate::Vec3;
 
 /// Where a vertex comes from: so far from one old vertex to another.
@@ -65,6 +65,7 @@ impl Parent {
                     [0, 1, 2].map(|c| (old.attached[0].inverse() * old.attached[c]).scaled_axis());
                 old.attached[0] * UnitQuaternion::from_scaled_axis(mix(&vectors, &b))
             }),
+            section: old.section,
         }
     }
 
@@ -85,6 +86,8 @@ pub struct Change {
     pub origins: Vec<Origin>,
     /// Where each of its elements comes from.
     pub parents: Vec<Parent>,
+    /// Where each old vertex went; of those it became the first.
+    pub present: Vec<u32>,
     /// Pairs of vertices that were one: the two lips of a cut.
     pub seam: Vec<[u32; 2]>,
 }
@@ -92,14 +95,13 @@ pub struct Change {
 impl Change {
     /// The pose of the new shell: strains of the elements' triangles stay as they were.
     pub fn pose(&self, old: &Pose) -> Pose {
-        let position = |origin: &Origin| origin.between(&old.positions, |a, b, t| a + (b - a) * t);
         let rotation = |origin: &Origin| {
             origin.between(&old.rotations, |a, b, t| {
                 UnitQuaternion::from_scaled_axis((b * a.inverse()).scaled_axis() * t) * a
             })
         };
         Pose {
-            positions: self.origins.iter().map(position).collect(),
+            positions: self.positions(&old.positions),
             rotations: self.origins.iter().map(rotation).collect(),
         }
     }
@@ -115,21 +117,35 @@ impl Change {
             .collect()
     }
 
-    /// Loads on nodes: what was on an old vertex is on the first of the vertices it became. Weight is better made anew.
+    /// Loads on nodes: what was on an old vertex is on the first of the vertices it became, and adds up where vertices became
+    /// one. Weight is better made anew.
     pub fn load(&self, old: &DeadLoad) -> DeadLoad {
         let mut loads = vec![0.0; NODE_UNKNOWNS * self.origins.len()];
-        let mut given = vec![false; old.values().len() / NODE_UNKNOWNS];
-        for (node, origin) in self.origins.iter().enumerate() {
-            let [v, end] = origin.ends;
-            if v == end && !std::mem::replace(&mut given[v as usize], true) {
-                let from = NODE_UNKNOWNS * v as usize;
-                loads[NODE_UNKNOWNS * node..NODE_UNKNOWNS * (node + 1)]
-                    .copy_from_slice(&old.values()[from..from + NODE_UNKNOWNS]);
+        for (of_node, now) in old.values().chunks_exact(NODE_UNKNOWNS).zip(&self.present) {
+            let first = NODE_UNKNOWNS * *now as usize;
+            for (sum, load) in loads[first..first + NODE_UNKNOWNS].iter_mut().zip(of_node) {
+                *sum += load;
             }
         }
         let mut load = DeadLoad::none(self.origins.len());
         load.add(&loads);
         load
+    }
+
+    /// Which of the new vertices belong to a group: what became of its vertices, and what lies between two of them.
+    pub fn group(&self, old: &[bool]) -> Vec<bool> {
+        let between = |origin: &Origin| origin.ends.iter().all(|v| old[*v as usize]);
+        let mut group: Vec<bool> = self.origins.iter().map(between).collect();
+        for (belongs, now) in old.iter().zip(&self.present) {
+            group[*now as usize] |= belongs;
+        }
+        group
+    }
+
+    /// Positions of the new vertices, where the old ones had these [m].
+    pub fn positions(&self, old: &[Vec3]) -> Vec<Vec3> {
+        let position = |origin: &Origin| origin.between(old, |a, b, t| a + (b - a) * t);
+        self.origins.iter().map(position).collect()
     }
 
     /// Supports: a new vertex on an edge is held where both of its ends are.
@@ -173,22 +189,8 @@ impl Change {
             .collect()
     }
 
-    /// A fine surface on the new shell. Triangles that lie across a cut, with corners on both of its sides, are left out:
-    /// their number is the second of the pair.
-    pub fn surface(&self, old: &MappedSurface) -> (MappedSurface, usize) {
-        let points = self.points(old.points());
-        let sides = self.sides();
-        let whole = |face: &&[u32; 3]| {
-            let elements = face.map(|v| points[v as usize].element);
-            (0..3).all(|k| same_side(&sides, elements[k], elements[(k + 1) % 3]))
-        };
-        let faces: Vec<[u32; 3]> = old.faces().iter().filter(whole).copied().collect();
-        let torn = old.faces().len() - faces.len();
-        (MappedSurface::bound(&self.shell, faces, points), torn)
-    }
-
     /// For every element, at which lip of the cut it is: false left of the path, true right of it.
-    fn sides(&self) -> Vec<Option<bool>> {
+    pub(super) fn sides(&self) -> Vec<Option<bool>> {
         let mut lip = vec![None; self.shell.mesh().num_vertices()];
         for [left, right] in &self.seam {
             lip[*left as usize] = Some(false);
@@ -197,13 +199,5 @@ impl Change {
         (self.shell.mesh().faces().iter())
             .map(|face| face.iter().find_map(|v| lip[*v as usize]))
             .collect()
-    }
-}
-
-/// Whether two elements are not at different lips of a cut.
-fn same_side(sides: &[Option<bool>], a: usize, b: usize) -> bool {
-    match (sides[a], sides[b]) {
-        (Some(a), Some(b)) => a == b,
-        _ => true,
     }
 }

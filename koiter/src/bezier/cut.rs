@@ -148,7 +148,9 @@ impl BezierShell {
             let parent: &Parent = &parents[index];
             (parent.is_whole()).then(|| Arc::clone(&self.elements()[parent.element]))
         };
+        let vertices = self.mesh().num_vertices() as u32;
         Ok(Change {
+            present: (0..vertices).collect(),
             shell: Self::of_elements(mesh, rest, *self.options(), known)?,
             origins,
             parents,

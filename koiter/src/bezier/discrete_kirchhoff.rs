@@ -40,7 +40,7 @@ fn middle_slopes(triangle: &FlatTriangle, i: usize, j: usize) -> Slopes {
 }
 
 /// Curvatures −(w_xx, w_yy, 2 w_xy) at ξ.
-fn strains(triangle: &FlatTriangle, xi: &Vector3<f64>) -> StrainMatrix {
+pub(super) fn strains(triangle: &FlatTriangle, xi: &Vector3<f64>) -> StrainMatrix {
     let mut b = StrainMatrix::zeros();
     let mut add = |slopes: &Slopes, x: f64, y: f64| {
         for k in 0..18 {

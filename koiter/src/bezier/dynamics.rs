@@ -113,6 +113,20 @@ impl Dynamics {
         dt: f64,
         limits: &NewtonLimits,
     ) -> Result<NewtonOutcome, BezierError> {
+        self.step_from(self.pose.clone(), others, dt, limits)
+    }
+
+    /// A step that begins to search at a pose in which what is held is already where it goes.
+    ///
+    /// # Errors
+    /// As [`Solver::minimize`]; pose and velocities are then those before the step.
+    pub fn step_from(
+        &mut self,
+        mut pose: Pose,
+        others: &mut [&mut dyn Potential],
+        dt: f64,
+        limits: &NewtonLimits,
+    ) -> Result<NewtonOutcome, BezierError> {
         let mut motion = self.velocities.clone();
         for (m, held) in motion.iter_mut().zip(self.supports.held()) {
             if *held {
@@ -135,7 +149,6 @@ impl Dynamics {
         let mut potentials: Vec<&mut dyn Potential> =
             vec![&mut self.shell, &mut inertia, &mut damping];
         potentials.extend(others.iter_mut().map(|p| &mut **p as &mut dyn Potential));
-        let mut pose = start.clone();
         let outcome = self
             .solver
             .minimize(&mut potentials, &self.supports, &mut pose, limits)?;
@@ -154,15 +167,37 @@ impl Dynamics {
         others: &mut [&mut dyn Potential],
         limits: &NewtonLimits,
     ) -> Result<NewtonOutcome, BezierError> {
+        self.settle_from(self.pose.clone(), others, limits)
+    }
+
+    /// Equilibrium that is searched from a pose in which what is held is already where it goes.
+    ///
+    /// # Errors
+    /// As [`Solver::minimize`]; the pose is then the one before.
+    pub fn settle_from(
+        &mut self,
+        mut pose: Pose,
+        others: &mut [&mut dyn Potential],
+        limits: &NewtonLimits,
+    ) -> Result<NewtonOutcome, BezierError> {
         let mut potentials: Vec<&mut dyn Potential> = vec![&mut self.shell];
         potentials.extend(others.iter_mut().map(|p| &mut **p as &mut dyn Potential));
-        let mut pose = self.pose.clone();
         let outcome = self
             .solver
             .minimize(&mut potentials, &self.supports, &mut pose, limits)?;
         self.pose = pose;
         self.velocities.fill(0.0);
         Ok(outcome)
+    }
+
+    /// What the solver keeps between steps ([`Solver::couplings`]).
+    pub fn couplings(&self) -> Vec<[u32; 2]> {
+        self.solver.couplings()
+    }
+
+    /// Takes up what a solver kept.
+    pub fn restore_couplings(&mut self, couplings: &[[u32; 2]]) {
+        self.solver.restore_couplings(couplings);
     }
 
     /// This motion on a shell that was cut or sewn. `pose` is that after sewing; without one it is that of the cut.

@@ -45,6 +45,11 @@ pub(super) type ElementVector = SVector<f64, 18>;
 
 /// Which element.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize, serde::Serialize, schemars::JsonSchema),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum ElementKind {
     /// The cubic triangle with the central point by degree elevation and control points that follow the stretch:
@@ -97,6 +102,8 @@ pub struct RestElement {
     pub normals: [Vec3; 3],
     /// Rotation from the rest state to how each corner hangs on its node: the identity unless it was sewn on.
     pub attached: [UnitQuaternion<f64>; 3],
+    /// What it is made of.
+    pub section: Section,
 }
 
 /// An element, ready to be evaluated.
@@ -113,12 +120,33 @@ pub struct Element {
 }
 
 /// Which derivative of the forces.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tangent {
     /// `E K Eᵀ`: never indefinite.
     Corotated,
+    /// So much of the consistent tangent, the rest the corotated one.
+    Share(f64),
     /// With the stiffness of the forces as they turn: Newton's method converges quadratically, nearly.
     Consistent,
+}
+
+impl Tangent {
+    /// How much of it is the consistent tangent.
+    pub(super) fn share(self) -> f64 {
+        match self {
+            Self::Corotated => 0.0,
+            Self::Share(share) => share,
+            Self::Consistent => 1.0,
+        }
+    }
+
+    pub(super) fn of_share(share: f64) -> Self {
+        match share {
+            0.0 => Self::Corotated,
+            1.0 => Self::Consistent,
+            share => Self::Share(share),
+        }
+    }
 }
 
 /// Energy and its derivatives, in world axes.
@@ -153,9 +181,9 @@ impl Element {
         rest: &RestElement,
         kind: ElementKind,
         rule: FrameRule,
-        section: &Section,
         index: usize,
     ) -> Result<Self, BezierError> {
+        let section = &rest.section;
         let [a, b, c] = rest.corners;
         let longest = (b - a).norm().max((c - a).norm());
         let frame = Frame::along_edge(&rest.corners, longest * longest)
@@ -191,6 +219,12 @@ impl Element {
         })
     }
 
+    /// This element with another stiffness.
+    #[cfg(test)]
+    pub(super) fn with_stiffness(self, stiffness: Stiffness) -> Self {
+        Self { stiffness, ..self }
+    }
+
     /// Area at rest [m²].
     pub fn area(&self) -> f64 {
         self.triangle.area
@@ -199,6 +233,25 @@ impl Element {
     /// Stiffness in the frame.
     pub fn stiffness(&self) -> &Stiffness {
         &self.stiffness
+    }
+
+    /// The flat triangle at rest.
+    pub(super) fn triangle(&self) -> &FlatTriangle {
+        &self.triangle
+    }
+
+    /// The levers of each corner in the frame at rest [m].
+    pub(super) fn local_levers(&self) -> [[Vec3; 3]; 3] {
+        [0, 1, 2].map(|i| self.levers[i].map(|s| self.axes[i].transpose() * s))
+    }
+
+    /// Displacements and rotations of the corners in the frame; `None` if the element has collapsed.
+    pub(super) fn deformation(
+        &self,
+        x: &[Vec3; 3],
+        turns: &[UnitQuaternion<f64>; 3],
+    ) -> Option<ElementVector> {
+        self.deform(x, turns).map(|(_, deformation)| deformation)
     }
 
     /// The levers of each corner as they hang on its node at rest [m].
@@ -228,6 +281,9 @@ impl Element {
         let placed = self.place(x, turns)?;
         let mut local = match (tangent, &placed.spin) {
             (Tangent::Consistent, Some(spin)) => self.consistent(&placed, spin),
+            (Tangent::Share(share), Some(spin)) => {
+                self.stiffness * (1.0 - share) + self.consistent(&placed, spin) * share
+            }
             _ => self.stiffness,
         };
         let axes = &placed.frame.axes;

@@ -76,6 +76,31 @@ pub enum BezierError {
         /// How many there are.
         elements: usize,
     },
+    /// A point of a path that is not on the shell.
+    #[error(
+        "the point ({:.4}, {:.4}, {:.4}) m of the path is {distance:.3e} m from the shell, more than {limit:.3e} m",
+        at[0], at[1], at[2]
+    )]
+    PathFar {
+        /// The point [m].
+        at: [f64; 3],
+        /// Its distance from the nearest element [m].
+        distance: f64,
+        /// The largest distance allowed [m].
+        limit: f64,
+    },
+    /// A vertex that finds none to be sewn to.
+    #[error(
+        "vertex {vertex} of the first row has no vertex of the second within {limit:.3e} m: the nearest is {distance:.3e} m away"
+    )]
+    Unpaired {
+        /// Which vertex.
+        vertex: u32,
+        /// How far the nearest is [m].
+        distance: f64,
+        /// The reach [m].
+        limit: f64,
+    },
     /// A path that reaches the boundary before its end.
     #[error("the path leaves the surface at ({:.4}, {:.4}, {:.4}) m", at[0], at[1], at[2])]
     PathLeavesSurface {
@@ -98,6 +123,14 @@ pub enum BezierError {
         /// Number of stops.
         stops: usize,
     },
+    /// A patch for a cut that is open at an end.
+    #[error(
+        "a patch fits a cut whose ends are both inside the surface: this one ends at the boundary"
+    )]
+    OpenEnd,
+    /// A patch for a cut that is closed.
+    #[error("the lips of the cut lie on each other: open it before a patch is sewn in")]
+    ClosedLips,
     /// A path whose neighbouring stops do not share an element.
     #[error("stops {from} and {to} of the path share no element")]
     PathBroken {
@@ -107,7 +140,7 @@ pub enum BezierError {
         to: usize,
     },
     /// Two shells of which one cannot be made a piece of the other.
-    #[error("the other shell is of another material, thickness or element: sew shells of one kind")]
+    #[error("the other shell is of another element: sew shells of one kind")]
     OtherShell,
     /// A pair of vertices that cannot be sewn together.
     #[error("vertices {} and {} cannot be sewn together: there are {} vertices, and a vertex is not sewn to itself", pair[0], pair[1], vertices)]

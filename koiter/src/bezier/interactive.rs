@@ -11,7 +11,7 @@ use super::dynamics::Dynamics;
 use super::map::{Carried, SurfacePoint};
 use super::newton::Potential;
 use super::pose::NODE_UNKNOWNS;
-use super::{BezierError, DeadLoad, NewtonLimits, Pose, Tangent};
+use super::{BezierError, DeadLoad, MappedContact, NewtonLimits, Pose, Tangent};
 use crate::Vec3;
 use crate::assembly::{HessianBuilder, NodeId};
 
@@ -82,6 +82,8 @@ pub struct Interaction {
     pub drags: Vec<Drag>,
     /// Forces and moments on its nodes, gravity among them.
     pub load: DeadLoad,
+    /// What it touches, if anything.
+    pub contact: Option<MappedContact>,
     /// Time of a frame in the simulation [s].
     pub dt: f64,
     /// Most iterations a frame.
@@ -89,10 +91,11 @@ pub struct Interaction {
 }
 
 impl Interaction {
-    /// A shell without drags and loads.
+    /// A shell without drags, loads and contact.
     pub fn new(dynamics: Dynamics, dt: f64) -> Self {
         Self {
             drags: Vec::new(),
+            contact: None,
             load: DeadLoad::none(dynamics.pose.len()),
             dynamics,
             dt,
@@ -119,9 +122,13 @@ impl Interaction {
         let held = (self.drags.iter()).filter(|drag| drag.point.element < elements);
         let mut drags = Drags(held.map(carried).collect());
         let mut load = self.load.clone();
-        let others: &mut [&mut dyn Potential] = &mut [&mut drags, &mut load];
+        let mut others: Vec<&mut dyn Potential> = vec![&mut drags, &mut load];
+        if let Some(contact) = &mut self.contact {
+            contact.begin_step(&self.dynamics.pose, self.dt);
+            others.push(contact);
+        }
         let mut report = FrameReport::default();
-        match self.dynamics.step(others, self.dt, &limits) {
+        match self.dynamics.step(&mut others, self.dt, &limits) {
             Ok(outcome) => {
                 report.iterations = outcome.iterations;
                 report.converged = outcome.converged;
@@ -137,14 +144,15 @@ impl Interaction {
         report
     }
 
-    /// Goes on with a shell that was cut or sewn; drags and loads go along. `pose` is that after sewing; without one it is
-    /// that of the cut.
+    /// Goes on with a shell that was cut or sewn; drags and loads go along, contact ends: lips lie on each other. `pose` is that
+    /// after sewing; without one it is that of the cut.
     pub fn change(&mut self, change: &Change, pose: Option<Pose>) {
         let points: Vec<SurfacePoint> = self.drags.iter().map(|d| d.point).collect();
         for (drag, point) in self.drags.iter_mut().zip(change.points(&points)) {
             drag.point = point;
         }
         self.load = change.load(&self.load);
+        self.contact = None;
         self.dynamics = self.dynamics.changed(change, pose);
     }
 

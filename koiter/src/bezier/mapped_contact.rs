@@ -19,19 +19,10 @@ use crate::assembly::{
     DofLayout, Energy, HessianBuilder, NodeId, Pattern, PatternBuilder, PsdProjection,
     SymmetricMatrix,
 };
-use crate::contact::{CollisionBody, CollisionMesh, Contact};
-use crate::mesh::Surface;
-
-/// An obstacle: a surface that stays rigid and is moved from outside.
-#[derive(Clone, Debug)]
-pub struct MovingObstacle {
-    /// Name in messages.
-    pub name: String,
-    /// Its surface, where it is.
-    pub surface: Surface,
-    /// Half its thickness [m].
-    pub offset: f64,
-}
+use crate::contact::{
+    CollisionBody, CollisionMesh, CollisionObstacle, Contact, ContactStatistics, Friction,
+    StartError, UnknownBody,
+};
 
 /// How contact acts.
 #[derive(Clone, Copy, Debug)]
@@ -40,86 +31,126 @@ pub struct ContactOptions {
     pub d_hat: f64,
     /// Stiffness of the barrier an area [J/m²].
     pub kappa: f64,
-    /// Half the thickness of the shell [m].
+    /// Half the distance at which two midsurfaces touch [m].
     pub offset: f64,
+    /// Friction coefficient of the shell.
+    pub friction: f64,
+    /// Sliding speed below which friction is smoothed [m/s].
+    pub friction_speed: f64,
 }
 
-/// The barrier between a fine surface, itself and obstacles.
+/// Barrier and friction between a fine surface, itself and obstacles.
 pub struct MappedContact {
     contact: Contact,
+    friction: Friction,
+    friction_speed: f64,
     mapped: MappedSurface,
     layout: DofLayout,
-    /// Positions of the obstacles' vertices, one after the other [m].
+    /// Points of the obstacles, one after the other [m].
     obstacles: Vec<Vec3>,
     /// Nodes that touch, coupled through the fine surface, since the last iteration began.
     coupled: Vec<[u32; 2]>,
     pattern: Option<Arc<Pattern>>,
 }
 
-/// An obstacle stops at this fraction of the way to where it would touch.
+/// What is held and the obstacles stop at this fraction of the way to where they would touch.
 const SHORT_OF_TOUCHING: f64 = 0.8;
 
+/// Trials of how far they may go: each is at most nine tenths of the one before.
+const MOST_TRIALS: usize = 60;
+
 impl MappedContact {
-    /// Contact of a fine surface with obstacles and itself; `pose` weighs areas.
+    /// Contact of a fine surface with obstacles and itself; `pose` weighs areas. `name` is what messages call the shell.
     pub fn new(
+        name: &str,
         mapped: MappedSurface,
-        obstacles: &[MovingObstacle],
+        obstacles: Vec<CollisionObstacle>,
         pose: &Pose,
         options: ContactOptions,
     ) -> Self {
         let mut layout = DofLayout::new();
         let rest_positions = mapped.positions(pose);
-        let edges = |faces: &[[u32; 3]]| {
-            let mut edges: Vec<[u32; 2]> = (faces.iter())
-                .flat_map(|f| [[f[0], f[1]], [f[1], f[2]], [f[2], f[0]]])
-                .map(|[a, b]| [a.min(b), a.max(b)])
-                .collect();
-            edges.sort_unstable();
-            edges.dedup();
-            edges
-        };
         let mut bodies = vec![CollisionBody {
-            name: "shell".to_owned(),
+            name: name.to_owned(),
             first_dof: layout.push_nodes(rest_positions.len(), 3, true),
             num_vertices: rest_positions.len(),
-            edges: edges(mapped.faces()),
+            edges: mapped.edges(),
             faces: mapped.faces().to_vec(),
             rest_positions,
             offset: options.offset,
             is_obstacle: false,
-            friction: 0.0,
+            friction: options.friction,
         }];
+        let (mut planes, mut points) = (Vec::new(), Vec::new());
         for obstacle in obstacles {
-            let surface = &obstacle.surface;
-            bodies.push(CollisionBody {
-                name: obstacle.name.clone(),
-                first_dof: layout.push_nodes(surface.positions.len(), 3, false),
-                num_vertices: surface.positions.len(),
-                edges: surface.mesh.edges().to_vec(),
-                faces: surface.mesh.faces().to_vec(),
-                rest_positions: surface.positions.clone(),
-                offset: obstacle.offset,
-                is_obstacle: true,
-                friction: 0.0,
-            });
+            points.extend_from_slice(&obstacle.points);
+            let first = layout.push_nodes(obstacle.points.len(), 3, false);
+            obstacle.add_to(first, &mut bodies, &mut planes);
         }
         let mesh = CollisionMesh::new(bodies);
+        let contact = Contact::new(mesh, planes, layout.clone(), options.d_hat, options.kappa);
         Self {
-            contact: Contact::new(
-                mesh,
-                Vec::new(),
-                layout.clone(),
-                options.d_hat,
-                options.kappa,
-            ),
-            obstacles: (obstacles.iter())
-                .flat_map(|o| o.surface.positions.clone())
-                .collect(),
+            contact,
+            friction: Friction {
+                layout: layout.clone(),
+                ..Friction::default()
+            },
+            friction_speed: options.friction_speed,
+            obstacles: points,
             mapped,
             layout,
             coupled: Vec::new(),
             pattern: None,
         }
+    }
+
+    /// Begins a step of `dt` [s]: friction acts with the normal forces there are at `pose`, on what slides from there.
+    /// Nothing is kept of the steps before but the stiffness of the barrier ([`Self::kappa`]).
+    pub fn begin_step(&mut self, pose: &Pose, dt: f64) {
+        let q = self.unknowns(pose);
+        self.contact.forget_search();
+        self.contact.prepare(&q);
+        self.friction.smoothing = self.friction_speed * dt;
+        self.contact.lag(&q, &mut self.friction);
+        self.friction.start = q;
+    }
+
+    /// Energy of the barrier at a pose [J].
+    pub fn barrier(&self, pose: &Pose) -> f64 {
+        self.contact.value(&self.unknowns(pose))
+    }
+
+    /// Stiffness of the barrier [J/m²]: it grows where gaps shrink.
+    pub fn kappa(&self) -> f64 {
+        self.contact.kappa()
+    }
+
+    /// Takes up stiffness of the barrier and points of the obstacles of an earlier moment.
+    pub fn restore(&mut self, kappa: f64, obstacles: &[Vec3]) {
+        self.contact.set_kappa(kappa);
+        self.obstacles.copy_from_slice(obstacles);
+    }
+
+    /// Pairs that push, and the smallest gap, as of the last iteration.
+    pub fn statistics(&self) -> ContactStatistics {
+        self.contact.statistics()
+    }
+
+    /// Friction between two bodies by name, in place of the mean of their coefficients.
+    ///
+    /// # Errors
+    /// A body that there is not.
+    pub fn set_friction(&mut self, bodies: &[String; 2], friction: f64) -> Result<(), UnknownBody> {
+        self.contact.set_friction(bodies, friction)
+    }
+
+    /// Refuses a pose in which something touches or intersects.
+    ///
+    /// # Errors
+    /// What touches.
+    pub fn check_start(&mut self, pose: &Pose) -> Result<(), StartError> {
+        let q = self.unknowns(pose);
+        self.contact.check_start(&q)
     }
 
     /// Fine positions and obstacles, as contact sees them.
@@ -130,30 +161,35 @@ impl MappedContact {
             .collect()
     }
 
-    /// Moves the obstacles towards other positions, but not so far that they touch the shell; returns the fraction of the way.
-    pub fn move_obstacles(&mut self, pose: &Pose, towards: &[Vec3]) -> f64 {
-        let from = self.unknowns(pose);
-        let shell = from.len() - 3 * self.obstacles.len();
-        let mut motion = vec![0.0; from.len()];
-        for (k, (to, at)) in towards.iter().zip(&self.obstacles).enumerate() {
-            motion[shell + 3 * k..shell + 3 * k + 3].copy_from_slice((to - at).as_slice());
+    /// Moves the obstacles towards other points and the shell from a pose towards another, but not so far that anything
+    /// touches; returns the fraction of the way, and the pose there.
+    pub fn approach(&mut self, from: &Pose, to: &Pose, towards: &[Vec3]) -> (f64, Pose) {
+        let start = self.unknowns(from);
+        let (before, motion) = (self.obstacles.clone(), from.motion_to(to));
+        let mut fraction = 1.0;
+        for _ in 0..MOST_TRIALS {
+            // All of the way ends at the very pose: a motion to it would round.
+            let pose = if fraction == 1.0 {
+                to.clone()
+            } else {
+                from.moved(&motion, fraction)
+            };
+            for (at, (from, to)) in self.obstacles.iter_mut().zip(before.iter().zip(towards)) {
+                *at = from + (to - from) * fraction;
+            }
+            let end = self.unknowns(&pose);
+            let way: Vec<f64> = end.iter().zip(&start).map(|(b, a)| b - a).collect();
+            let allowed = self.contact.max_step(&start, &way);
+            if allowed >= 1.0 {
+                return (fraction, pose);
+            }
+            fraction *= (SHORT_OF_TOUCHING * allowed).min(0.9);
         }
-        self.contact.prepare(&from);
-        let allowed = self.contact.max_step(&from, &motion);
-        let fraction = if allowed < 1.0 {
-            SHORT_OF_TOUCHING * allowed
-        } else {
-            1.0
-        };
-        for (at, to) in self.obstacles.iter_mut().zip(towards) {
-            *at += (to - *at) * fraction;
-        }
-        let now = self.unknowns(pose);
-        self.contact.prepare(&now);
-        fraction
+        self.obstacles = before;
+        (0.0, from.clone())
     }
 
-    /// Positions of the obstacles' vertices [m].
+    /// Points of the obstacles [m].
     pub fn obstacles(&self) -> &[Vec3] {
         &self.obstacles
     }
@@ -163,11 +199,12 @@ impl MappedContact {
         &self.mapped
     }
 
-    /// Vertices of the fine surface that contact pushes at a pose, with the forces on them [N].
+    /// Vertices of the fine surface that contact or friction pushes at a pose, with the forces on them [N].
     pub fn forces(&self, pose: &Pose) -> Vec<(usize, Vec3)> {
         let q = self.unknowns(pose);
         let mut gradient = vec![0.0; q.len()];
         self.contact.add_gradient(&q, &mut gradient);
+        self.friction.add_gradient(&q, &mut gradient);
         (0..self.mapped.points().len())
             .map(|v| (v, -Vec3::from_column_slice(&gradient[3 * v..3 * v + 3])))
             .filter(|(_, force)| force.norm_squared() > 0.0)
@@ -178,6 +215,7 @@ impl MappedContact {
     fn make_pattern(&mut self, q: &[f64]) {
         let mut builder = PatternBuilder::default();
         self.contact.add_to_pattern(q, &mut builder);
+        self.friction.add_to_pattern(q, &mut builder);
         let pairs = builder.finish();
         self.coupled.clear();
         let solved = self.layout.num_solved_nodes() as u32;
@@ -203,7 +241,8 @@ impl Potential for MappedContact {
     }
 
     fn value(&self, pose: &Pose) -> Option<f64> {
-        let value = self.contact.value(&self.unknowns(pose));
+        let q = self.unknowns(pose);
+        let value = self.contact.value(&q) + self.friction.value(&q);
         value.is_finite().then_some(value)
     }
 
@@ -226,6 +265,7 @@ impl Potential for MappedContact {
             coupling: &mut coupling,
         };
         (self.contact).add_derivatives(&q, PsdProjection::Clamp, &mut of_points, &mut fine);
+        (self.friction).add_derivatives(&q, PsdProjection::Clamp, &mut of_points, &mut fine);
         for (v, carried) in self.mapped.carried().iter().enumerate() {
             let force = Vec3::from_column_slice(&of_points[3 * v..3 * v + 3]);
             if force != Vec3::zeros() {
@@ -292,59 +332,4 @@ impl MappedContact {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::bezier::problems::{RoofEdges, roof};
-    use crate::bezier::{Dynamics, ElementKind, NewtonLimits};
-    use crate::mesh::generate::icosphere;
-
-    #[test]
-    fn a_ball_pushes_the_roof_in_without_touching_it() {
-        let problem = roof(ElementKind::Bezier, 6, RoofEdges::Clamped).unwrap();
-        let rest = problem.shell.rest_pose();
-        let mapped = MappedSurface::subdivided(&problem.shell, 3);
-        let mut ball = icosphere(3.0, 2).unwrap();
-        let at = Vec3::new(8.0, 15.0, 28.2);
-        ball.positions.iter_mut().for_each(|x| *x += at);
-        let start = ball.positions.clone();
-        let obstacle = MovingObstacle {
-            name: "ball".to_owned(),
-            surface: ball,
-            offset: 0.0,
-        };
-        let options = ContactOptions {
-            d_hat: 0.1,
-            kappa: 1e5,
-            offset: 0.125,
-        };
-        let mut contact = MappedContact::new(mapped, &[obstacle], &rest, options);
-        let mut moving = Dynamics::new(problem.shell, problem.supports);
-        let limits = NewtonLimits::for_edges(problem.edge);
-        let mut pushed = 0;
-        for step in 1..=10 {
-            let down = Vec3::new(0.0, 0.0, -0.15 * step as f64);
-            let towards: Vec<Vec3> = start.iter().map(|x| x + down).collect();
-            for _ in 0..20 {
-                let fraction = contact.move_obstacles(&moving.pose, &towards);
-                let outcome = moving.settle(&mut [&mut contact], &limits).unwrap();
-                assert!(outcome.iterations < 50, "{step}: {outcome:?}");
-                if fraction == 1.0 {
-                    break;
-                }
-            }
-            pushed = contact.forces(&moving.pose).len();
-        }
-        assert!((contact.obstacles()[0] - start[0]).norm() > 1.49);
-        assert!(pushed > 0);
-        // No fine vertex is within the ball and the offset; between the facets of the ball it is smaller than its radius.
-        let centre = at + Vec3::new(0.0, 0.0, -1.5);
-        let nearest = (contact.mapped().positions(&moving.pose).iter())
-            .map(|x| (x - centre).norm())
-            .fold(f64::INFINITY, f64::min);
-        assert!(nearest > 2.9, "{nearest}");
-        // Contact pushes inwards, and the shell pushes back: loads are in balance, so forces on nodes are those of the map.
-        let forces = contact.forces(&moving.pose);
-        let total: Vec3 = forces.iter().map(|(_, f)| f).sum();
-        assert!(total.z < 0.0, "{total}");
-    }
-}
+mod tests;

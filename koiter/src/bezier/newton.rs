@@ -1,7 +1,7 @@
 //! Newton's method over poses: positions and rotations.
 //!
-//! A step solves `K p = −g` with K the consistent tangent, or the corotated one where the first is not positive definite,
-//! moves the pose along it (`x + α δx`, `exp(α δθ) R`) and halves α until the sum of the potentials falls enough. Where the
+//! A step solves `K p = −g` with K the consistent tangent, or a mean of it and of the corotated one, which never is
+//! indefinite, where the first is not positive definite; moves the pose along it (`x + α δx`, `exp(α δθ) R`) and halves α until the sum of the potentials falls enough. Where the
 //! forces are not the derivatives of an energy ([`Potential::has_energy`]) full steps are taken.
 
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use std::time::Instant;
 use super::pose::NODE_UNKNOWNS;
 use super::{BezierError, Pose, Supports, Tangent};
 use crate::assembly::{
-    CoupledPairs, DofLayout, HessianBuilder, Pattern, PatternBuilder, SymmetricMatrix,
+    CoupledPairs, DofLayout, HessianBuilder, NodeId, Pattern, PatternBuilder, SymmetricMatrix,
 };
 use crate::solve::{
     LinearSolver, NodeBlocks, NodeOrdering, SparseCholesky, conjugate_gradients, nested_dissection,
@@ -84,8 +84,8 @@ pub struct NewtonOutcome {
     pub late: bool,
     /// Length of the last full step [m].
     pub last_step: f64,
-    /// Iterations with the corotated tangent, the consistent one being indefinite.
-    pub corotated: usize,
+    /// Times that the tangent was indefinite and had less of the consistent one.
+    pub indefinite: usize,
     /// Iterations of conjugate gradients.
     pub inner_iterations: usize,
 }
@@ -97,6 +97,12 @@ const LARGEST_TURN: f64 = 0.5;
 const DECREASE: f64 = 1e-4;
 
 const MOST_HALVINGS: usize = 30;
+
+/// The share of the consistent tangent grows by this factor after a step, and falls by it where it is indefinite …
+const SHARE_FACTOR: f64 = 2.0;
+
+/// … and below this share it is left out.
+const LEAST_SHARE: f64 = 0.1;
 
 /// Iterations of conjugate gradients, at most.
 const MOST_INNER: usize = 2000;
@@ -132,6 +138,24 @@ impl Solver {
         }
     }
 
+    /// The couplings that the matrix has, contacts of the past among them: they decide its order of elimination, and with it
+    /// the last bits of every solution.
+    pub fn couplings(&self) -> Vec<[u32; 2]> {
+        self.pairs.iter().map(|(a, b)| [a.0, b.0]).collect()
+    }
+
+    /// Makes the coming solutions those of a solver with these couplings; none: those of a new one.
+    pub fn restore_couplings(&mut self, couplings: &[[u32; 2]]) {
+        if couplings.is_empty() {
+            return;
+        }
+        let mut builder = PatternBuilder::default();
+        for pair in couplings {
+            builder.couple(pair.map(NodeId));
+        }
+        self.take_pattern(builder.finish());
+    }
+
     /// The matrix of the last iteration.
     pub fn matrix(&self) -> Option<&SymmetricMatrix> {
         self.matrix.as_ref()
@@ -165,7 +189,7 @@ impl Solver {
     ) -> Result<NewtonOutcome, BezierError> {
         let mut outcome = NewtonOutcome::default();
         let has_energy = potentials.iter().all(|p| p.has_energy());
-        let mut tangent = limits.tangent;
+        let mut share = limits.tangent.share();
         while outcome.iterations < limits.iterations && !outcome.converged {
             let start = Instant::now();
             let expected = std::time::Duration::from_secs_f64(self.seconds_per_iteration);
@@ -178,14 +202,8 @@ impl Solver {
                 potential.begin(pose);
             }
             self.update_pattern(potentials);
-            let (here, step) = self.step(
-                potentials,
-                supports,
-                pose,
-                &mut tangent,
-                limits,
-                &mut outcome,
-            )?;
+            let (here, step) =
+                self.step(potentials, supports, pose, &mut share, limits, &mut outcome)?;
             outcome.iterations += 1;
             outcome.last_step = length(&step, limits.arm);
             outcome.converged = outcome.last_step <= limits.tolerance;
@@ -224,40 +242,40 @@ impl Solver {
             potential.begin(pose);
         }
         self.update_pattern(potentials);
-        let (mut tangent, mut outcome) = (limits.tangent, NewtonOutcome::default());
-        let (_, step) = self.step(
-            potentials,
-            supports,
-            pose,
-            &mut tangent,
-            limits,
-            &mut outcome,
-        )?;
+        let (mut share, mut outcome) = (limits.tangent.share(), NewtonOutcome::default());
+        let (_, step) = self.step(potentials, supports, pose, &mut share, limits, &mut outcome)?;
         Ok(step)
     }
 
-    /// Linearises and solves for a step.
+    /// Linearises and solves for a step, with as large a share of the consistent tangent as is definite.
     fn step(
         &mut self,
         potentials: &[&mut dyn Potential],
         supports: &Supports,
         pose: &Pose,
-        tangent: &mut Tangent,
+        share: &mut f64,
         limits: &NewtonLimits,
         outcome: &mut NewtonOutcome,
     ) -> Result<(Linearised, Vec<f64>), BezierError> {
         let value = total(potentials, pose).ok_or(BezierError::Undefined)?;
         loop {
-            let gradient = self.linearise(potentials, pose, *tangent);
+            let gradient = self.linearise(potentials, pose, Tangent::of_share(*share));
             let mut step: Vec<f64> = gradient.iter().map(|g| -g).collect();
             let still = vec![0.0; step.len()];
             let matrix = self.matrix.as_mut().expect("the pattern was made");
             matrix.fix(supports.held(), &still, &mut step);
             match self.solve(&mut step, limits, outcome) {
-                Ok(()) => return Ok((Linearised { gradient, value }, step)),
-                Err(_) if *tangent == Tangent::Consistent => {
-                    *tangent = Tangent::Corotated;
-                    outcome.corotated += 1;
+                Ok(()) => {
+                    let grown = (SHARE_FACTOR * *share).max(LEAST_SHARE);
+                    *share = grown.min(limits.tangent.share());
+                    return Ok((Linearised { gradient, value }, step));
+                }
+                Err(_) if *share > 0.0 => {
+                    *share /= SHARE_FACTOR;
+                    if *share < LEAST_SHARE {
+                        *share = 0.0;
+                    }
+                    outcome.indefinite += 1;
                 }
                 Err(unknown) => {
                     let vertex = unknown / NODE_UNKNOWNS;
@@ -330,14 +348,17 @@ impl Solver {
             potential.add_to_pattern(&mut builder);
         }
         let needed = builder.finish();
-        if self.matrix.is_some() && self.pairs.contains_all(&needed) {
-            return;
+        if self.matrix.is_none() || !self.pairs.contains_all(&needed) {
+            self.take_pattern(needed);
         }
+    }
+
+    fn take_pattern(&mut self, pairs: CoupledPairs) {
         self.matrix = Some(SymmetricMatrix::zeros(Arc::new(Pattern::new(
             &self.layout,
-            &needed,
+            &pairs,
         ))));
-        self.pairs = needed;
+        self.pairs = pairs;
         self.ordering = None;
         self.analyzed = false;
     }

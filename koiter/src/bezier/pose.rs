@@ -110,6 +110,11 @@ impl Supports {
         self.held[NODE_UNKNOWNS * node + axis] = true;
     }
 
+    /// Holds the rotation of a node.
+    pub fn hold_rotation(&mut self, node: usize) {
+        self.held[NODE_UNKNOWNS * node + 3..NODE_UNKNOWNS * (node + 1)].fill(true);
+    }
+
     /// Puts a node on a plane of symmetry whose normal is an axis (0, 1, 2): no motion along it, no rotation about the
     /// others.
     pub fn mirror(&mut self, node: usize, axis: usize) {

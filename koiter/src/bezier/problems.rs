@@ -1,6 +1,6 @@
-//! Published problems for shells: a quarter of the Scordelis–Lo roof and of the pinched hemisphere.
+//! Published problems: a quarter of the Scordelis–Lo roof and of the pinched hemisphere, a clamped plate.
 //!
-//! Grids of `cells` × `cells` pairs of triangles whose diagonals all run the same way; normals are those of the smooth
+//! Grids of `cells` × `cells` pairs of triangles whose diagonals all run the same way, but where it says otherwise; normals are those of the smooth
 //! surface. `benchmarks/` says where the numbers are from.
 
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -12,7 +12,7 @@ use super::{
 use super::{NewtonLimits, NewtonOutcome};
 use crate::Vec3;
 use crate::mesh::Surface;
-use crate::mesh::generate::{GridDiagonals, cylinder_panel, sphere_zone};
+use crate::mesh::generate::{GridDiagonals, cylinder_panel, grid, sphere_zone};
 
 /// A shell with supports and loads, and the displacement that is looked at.
 #[derive(Clone, Debug)]
@@ -156,6 +156,77 @@ pub fn hemisphere(kind: ElementKind, cells: usize, force: f64) -> Result<Problem
         load,
         probes: vec![(0, Vec3::x()), (cells, -Vec3::y())],
         edge: 10.0 * FRAC_PI_2 / cells as f64,
+    })
+}
+
+/// The mesh of a plate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlateMesh {
+    /// All diagonals run the same way: edges have three directions.
+    Uniform,
+    /// Diagonals alternate from cell to cell.
+    Alternating,
+    /// Diagonals run the same way, and vertices inside are moved by up to a quarter of a cell, always the same.
+    Jittered,
+}
+
+/// A square plate whose edges are clamped, of unit size and rigidity, under a uniform load of 1 an area. The probe is the
+/// deflection of the middle, 0.00126532 by Kirchhoff's theory.
+///
+/// # Errors
+/// As [`BezierShell::new`].
+///
+/// # Panics
+/// If there are no cells.
+pub fn clamped_plate(
+    kind: ElementKind,
+    cells: usize,
+    mesh: PlateMesh,
+) -> Result<Problem, BezierError> {
+    let diagonals = match mesh {
+        PlateMesh::Alternating => GridDiagonals::Checkerboard,
+        _ => GridDiagonals::Uniform,
+    };
+    let mut surface = grid(1.0, 1.0, cells, cells, diagonals).expect("the plate is a proper grid");
+    let is_rim = |x: &Vec3| x.x.abs().max(x.y.abs()) > 0.5 - 1e-9;
+    if mesh == PlateMesh::Jittered {
+        let size = 0.25 / cells as f64;
+        for (node, x) in surface.positions.iter_mut().enumerate() {
+            let middle = x.norm() < 1e-9;
+            if !is_rim(x) && !middle {
+                // Two irrational rotations: spread evenly, and the same everywhere.
+                let [a, b] = [0.754_877_666, 0.569_840_291].map(|r| (r * node as f64).fract());
+                *x += Vec3::new(2.0 * a - 1.0, 2.0 * b - 1.0, 0.0) * size;
+            }
+        }
+    }
+    let thickness = 1e-3;
+    let nu: f64 = 0.3;
+    let section = Section {
+        youngs_modulus: 12.0 * (1.0 - nu * nu) / f64::powi(thickness, 3),
+        poissons_ratio: nu,
+        thickness,
+        density: 1.0 / thickness,
+    };
+    let shell = shell(&surface, |_| Vec3::z(), kind, None, section)?;
+    let mut supports = Supports::none(surface.positions.len());
+    let mut middle = 0;
+    for (node, x) in surface.positions.iter().enumerate() {
+        if is_rim(x) {
+            supports.clamp(node);
+        }
+        if x.norm() < surface.positions[middle].norm() {
+            middle = node;
+        }
+    }
+    let mut load = DeadLoad::none(surface.positions.len());
+    load.add_gravity(&shell, Vec3::z());
+    Ok(Problem {
+        shell,
+        supports,
+        load,
+        probes: vec![(middle, Vec3::z())],
+        edge: 1.0 / cells as f64,
     })
 }
 

@@ -12,6 +12,7 @@ use crate::Vec3;
 use crate::assembly::{
     DofLayout, HessianBuilder, NodeId, PatternBuilder, ordered_sum, parallel_map,
 };
+use crate::geometry::point_triangle;
 use crate::mesh::{Surface, TriMesh};
 
 /// What a shell is made of.
@@ -62,6 +63,7 @@ impl BezierShell {
                 corners: face.map(|v| surface.positions[v as usize]),
                 normals: face.map(|v| normals[v as usize].normalize()),
                 attached: [UnitQuaternion::identity(); 3],
+                section: options.section,
             })
             .collect();
         options.section.check()?;
@@ -81,41 +83,21 @@ impl BezierShell {
         let rule = options.frame.unwrap_or(options.kind.frame_rule());
         let made = parallel_map(rest.len(), |index| match known(index) {
             Some(element) => Ok(element),
-            None => Element::new(&rest[index], options.kind, rule, &options.section, index)
-                .map(Arc::new),
+            None => Element::new(&rest[index], options.kind, rule, index).map(Arc::new),
         });
         let elements: Vec<Arc<Element>> = made.into_iter().collect::<Result<_, _>>()?;
-        let mut masses = vec![0.0; mesh.num_vertices()];
-        for (face, element) in mesh.faces().iter().zip(&elements) {
-            for &v in face {
-                masses[v as usize] += options.section.area_density() * element.area() / 3.0;
-            }
-        }
-        let mut shell = Self {
+        let (masses, rotational_inertias) = lump(&mesh, &rest, &elements);
+        Ok(Self {
             options,
             mesh,
             rest,
             elements,
             masses,
-            rotational_inertias: Vec::new(),
-        };
-        shell.rotational_inertias = shell.lump_rotational_inertia();
-        Ok(shell)
+            rotational_inertias,
+        })
     }
 
-    /// A node turns its share of the surface, as a round plate of its area A about a diameter: `m (t²/12 + A/4π)` [kg m²].
-    fn lump_rotational_inertia(&self) -> Vec<f64> {
-        let section = &self.options.section;
-        (self.masses.iter())
-            .map(|mass| {
-                let area = mass / section.area_density();
-                let round = area / (4.0 * std::f64::consts::PI);
-                mass * (section.thickness.powi(2) / 12.0 + round)
-            })
-            .collect()
-    }
-
-    /// What it is made of.
+    /// What it was made of first; elements that were sewn on have sections of their own ([`RestElement::section`]).
     pub fn options(&self) -> &ShellOptions {
         &self.options
     }
@@ -152,7 +134,7 @@ impl BezierShell {
 
     /// Mass [kg].
     pub fn mass(&self) -> f64 {
-        self.options.section.area_density() * self.area()
+        self.masses.iter().sum()
     }
 
     /// The pose of the rest shape; where parts were sewn together, of one of them.
@@ -164,6 +146,53 @@ impl BezierShell {
             }
         }
         Pose::at(positions)
+    }
+
+    /// Where a point is on the flat triangle of its element at rest [m].
+    pub fn rest_position(&self, point: &super::SurfacePoint) -> Vec3 {
+        let corners = &self.rest[point.element].corners;
+        (0..3).map(|c| corners[c] * point.barycentric[c]).sum()
+    }
+
+    /// The point of some elements, on their flat triangles at rest, that is nearest to a position, and how far it is [m].
+    pub fn nearest(
+        &self,
+        x: &Vec3,
+        is_meant: impl Fn(usize) -> bool,
+    ) -> Option<(f64, super::SurfacePoint)> {
+        let found = (0..self.elements.len())
+            .filter(|e| is_meant(*e))
+            .map(|element| {
+                let [a, b, c] = &self.rest[element].corners;
+                let closest = point_triangle(x, a, b, c);
+                let barycentric = [1, 2, 3].map(|k| -closest.weights[k]);
+                let point = super::SurfacePoint {
+                    element,
+                    barycentric,
+                };
+                (closest.distance_squared.sqrt(), point)
+            });
+        found.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// As [`Self::nearest`], where that is not farther than an edge of an element.
+    ///
+    /// # Errors
+    /// A position that is farther.
+    pub fn nearest_within_an_edge(
+        &self,
+        x: &Vec3,
+        is_meant: impl Fn(usize) -> bool,
+    ) -> Result<super::SurfacePoint, BezierError> {
+        let limit = (2.0 * self.area() / self.elements.len() as f64).sqrt();
+        match self.nearest(x, is_meant) {
+            Some((distance, point)) if distance <= limit => Ok(point),
+            found => Err(BezierError::PathFar {
+                at: (*x).into(),
+                distance: found.map_or(f64::INFINITY, |(distance, _)| distance),
+                limit,
+            }),
+        }
     }
 
     /// Six unknowns a node.
@@ -204,6 +233,24 @@ impl BezierShell {
             }
         }
         gradient
+    }
+
+    /// The forces and moments by the linear theory that hold a motion of the rest shape, six numbers a node [N, N m].
+    pub fn linear_forces(&self, motion: &[f64]) -> Vec<f64> {
+        let rest = self.rest_pose();
+        let mut forces = vec![0.0; motion.len()];
+        for (index, face) in self.mesh.faces().iter().enumerate() {
+            let (x, turns) = self.corners(index, &rest);
+            let made = self.elements[index].derivatives(&x, &turns, Tangent::Corotated);
+            let Some((_, stiffness)) = made else { continue };
+            for i in 0..18 {
+                for j in 0..18 {
+                    let [to, from] = [i, j].map(|k| NODE_UNKNOWNS * face[k / 6] as usize + k % 6);
+                    forces[to] += stiffness[(i, j)] * motion[from];
+                }
+            }
+        }
+        forces
     }
 
     fn scatter(&self, element: usize, state: &ElementState, gradient: &mut [f64]) {
@@ -262,17 +309,23 @@ impl Potential for BezierShell {
     }
 }
 
-/// Normals at the vertices: of their faces, weighted by the angles there.
-pub fn vertex_normals(surface: &Surface) -> Vec<Vec3> {
-    let mut normals = vec![Vec3::zeros(); surface.mesh.num_vertices()];
-    for (index, face) in surface.mesh.faces().iter().enumerate() {
-        let x = surface.corners(index);
-        for c in 0..3 {
-            let (a, b) = (x[(c + 1) % 3] - x[c], x[(c + 2) % 3] - x[c]);
-            let cross = a.cross(&b);
-            let angle = cross.norm().atan2(a.dot(&b));
-            normals[face[c] as usize] += cross.normalize() * angle;
+/// Masses [kg] and resistances to turning [kg m²] of the nodes: a node has a third of each of its elements, and turns it as a
+/// round plate of its area A about a diameter, `m (t²/12 + A/4π)`.
+fn lump(mesh: &TriMesh, rest: &[RestElement], elements: &[Arc<Element>]) -> (Vec<f64>, Vec<f64>) {
+    let vertices = mesh.num_vertices();
+    let (mut masses, mut areas) = (vec![0.0; vertices], vec![0.0; vertices]);
+    let mut inertias = vec![0.0; vertices];
+    for ((face, rest), element) in mesh.faces().iter().zip(rest).zip(elements) {
+        let (area, section) = (element.area() / 3.0, &rest.section);
+        let mass = section.area_density() * area;
+        for v in face.map(|v| v as usize) {
+            masses[v] += mass;
+            areas[v] += area;
+            inertias[v] += mass * section.thickness.powi(2) / 12.0;
         }
     }
-    normals.iter().map(|n| n.normalize()).collect()
+    for (v, inertia) in inertias.iter_mut().enumerate() {
+        *inertia += masses[v] * areas[v] / (4.0 * std::f64::consts::PI);
+    }
+    (masses, inertias)
 }

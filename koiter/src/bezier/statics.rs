@@ -52,6 +52,14 @@ impl DeadLoad {
         }
     }
 
+    /// These, and nothing on so many nodes more.
+    pub fn with_free(mut self, nodes: usize) -> Self {
+        let length = self.loads.len() + NODE_UNKNOWNS * nodes;
+        self.loads.resize(length, 0.0);
+        self.origin = None;
+        self
+    }
+
     /// All loads times a factor.
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -111,16 +119,24 @@ pub struct Pressure {
 impl Pressure {
     /// A pressure on all elements that pushes along their normals if it is positive.
     pub fn new(shell: &BezierShell, pressure: f64) -> Self {
+        Self::on(shell, pressure, |_| true)
+    }
+
+    /// A pressure on some elements, by their numbers.
+    pub fn on(shell: &BezierShell, pressure: f64, is_on: impl Fn(usize) -> bool) -> Self {
+        let faces = shell.mesh().faces().iter().enumerate();
         Self {
             pressure,
-            faces: shell.mesh().faces().to_vec(),
+            faces: (faces
+                .filter(|(element, _)| is_on(*element))
+                .map(|(_, face)| *face))
+            .collect(),
             load: DeadLoad::none(shell.mesh().num_vertices()),
         }
     }
-}
 
-impl Potential for Pressure {
-    fn begin(&mut self, pose: &Pose) {
+    /// Its forces at a pose.
+    pub fn at(&self, pose: &Pose) -> DeadLoad {
         let mut load = DeadLoad::none(pose.len());
         for face in &self.faces {
             let [a, b, c] = face.map(|v| pose.positions[v as usize]);
@@ -129,7 +145,13 @@ impl Potential for Pressure {
                 load.add_force(v as usize, third);
             }
         }
-        self.load = load;
+        load
+    }
+}
+
+impl Potential for Pressure {
+    fn begin(&mut self, pose: &Pose) {
+        self.load = self.at(pose);
     }
 
     fn value(&self, pose: &Pose) -> Option<f64> {

@@ -103,6 +103,27 @@ impl SurfacePath {
         Ok(path)
     }
 
+    /// The path from point to point, of which there are two or more.
+    ///
+    /// # Errors
+    /// As [`Self::between`]; a single point.
+    pub fn through(
+        shell: &BezierShell,
+        positions: &[Vec3],
+        points: &[SurfacePoint],
+    ) -> Result<Self, BezierError> {
+        let mut whole: Option<Self> = None;
+        for pair in points.windows(2) {
+            let next = Self::between(shell, positions, &pair[0], &pair[1])?;
+            whole = Some(match whole {
+                None => next,
+                Some(path) => path.then(&next),
+            });
+        }
+        let stops = points.len();
+        whole.ok_or(BezierError::PathTooShort { stops })
+    }
+
     /// Adds the crossings from one face to another.
     fn cross(
         &mut self,

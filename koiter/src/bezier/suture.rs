@@ -19,12 +19,14 @@ pub enum SeamAngle {
 }
 
 impl BezierShell {
-    /// This shell and another one as a single shell of two pieces; the vertices of the other come behind.
+    /// This shell and another one as a single shell of two pieces; the vertices of the other come behind. Elements keep
+    /// their materials and thicknesses.
     ///
     /// # Errors
-    /// A shell of another material, thickness or element.
+    /// A shell of another element.
     pub fn beside(&self, other: &Self) -> Result<Self, BezierError> {
-        if self.options() != other.options() {
+        let kind = |shell: &Self| (shell.options().kind, shell.options().frame);
+        if kind(self) != kind(other) {
             return Err(BezierError::OtherShell);
         }
         let first = self.mesh().num_vertices() as u32;
@@ -98,6 +100,7 @@ impl BezierShell {
         let change = Change {
             shell: Self::of_elements(mesh, rest, *self.options(), known)?,
             parents: (0..self.elements().len()).map(Parent::whole).collect(),
+            present: (0..vertices as u32).map(new).collect(),
             origins,
             seam: Vec::new(),
         };

@@ -16,6 +16,7 @@ mod collision_mesh;
 mod energy;
 mod friction;
 mod friction_table;
+mod obstacle;
 mod pair;
 mod plane;
 mod search;
@@ -32,6 +33,7 @@ pub use collision_mesh::{CollisionBody, CollisionMesh};
 
 pub use friction::Friction;
 pub use friction_table::UnknownBody;
+pub use obstacle::{CollisionObstacle, ObstacleBody};
 pub use pair::{Pair, PairKind};
 pub use plane::CollisionPlane;
 pub use start::{StartError, TouchingPair};

@@ -149,6 +149,16 @@ pub enum StepError {
         /// The largest kinetic energy so far [J].
         kinetic: f64,
     },
+    /// What was to be done to a shell cannot be done to it as it is.
+    #[error("procedure '{procedure}' cannot be carried out in step {step}: {reason}")]
+    Procedure {
+        /// Step number.
+        step: usize,
+        /// Name of the procedure.
+        procedure: String,
+        /// Why.
+        reason: String,
+    },
     /// The accepted state has surfaces that intersect: a bug, never silent.
     #[error("surfaces intersect after step {step}: {details}")]
     Intersection {

@@ -6,15 +6,14 @@ use super::composition_error::CompositionError;
 use super::elastic::{Elastic, rest_surface};
 use super::expressions::expressions;
 use super::loads::loads;
-use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell};
+use super::model::{IntegratorKind, Model, Obstacle, ObstacleShape, Shell, Surface};
 use super::processes::ProcessError;
 use super::symmetry::symmetry_edges;
 use crate::Vec3;
 use crate::assembly::{Assembled, Dof, DofLayout};
+use crate::bezier::BezierError;
 use crate::burning::BurningError;
-use crate::contact::{
-    CollisionBody, CollisionMesh, CollisionPlane, Contact, StartError, UnknownBody,
-};
+use crate::contact::{CollisionBody, CollisionMesh, Contact, StartError, UnknownBody};
 use crate::energy::Gravity;
 use crate::energy::expression::ExpressionError;
 use crate::integrate::{OffsetSurfaces, ShellPart, System};
@@ -124,6 +123,14 @@ pub enum BuildError {
     /// Friction with a body that there is not.
     #[error(transparent)]
     Friction(#[from] UnknownBody),
+    /// A Bézier shell that cannot be made, or a fine surface that is not its own.
+    #[error("Bézier shell '{shell}': {error}")]
+    Bezier {
+        /// Name of the shell.
+        shell: String,
+        /// What is wrong.
+        error: BezierError,
+    },
     /// Explicit steps and contact.
     #[error(
         "explicit steps (solver.newmark.beta = 0) know no contact, which needs a line search: set contact.enabled = false, \
@@ -368,41 +375,17 @@ fn build_contact(
         .collect();
     let mut planes = Vec::new();
     for (obstacle, (first, points)) in model.obstacles.iter().zip(obstacles) {
-        let (edges, faces, offset) = match &obstacle.shape {
-            ObstacleShape::Plane { normal, .. } => {
-                planes.push(CollisionPlane {
-                    name: obstacle.name.clone(),
-                    point: *first,
-                    normal: *normal,
-                    friction: obstacle.friction,
-                });
-                continue;
-            }
-            ObstacleShape::Sphere { radius, .. } => (vec![], vec![], *radius),
-            ObstacleShape::Capsule { radius, .. } => (vec![[0, 1]], vec![], *radius),
-            ObstacleShape::Mesh(surface) => (
-                surface.mesh.edges().to_vec(),
-                surface.mesh.faces().to_vec(),
-                0.0,
-            ),
-        };
-        bodies.push(CollisionBody {
-            name: obstacle.name.clone(),
-            first_dof: *first,
-            num_vertices: points.len(),
-            edges,
-            faces,
-            rest_positions: points.clone(),
-            offset,
-            is_obstacle: true,
-            friction: obstacle.friction,
-        });
+        let body = obstacle.collision(points.clone());
+        body.add_to(*first, &mut bodies, &mut planes);
     }
-    let d_hat = model.contact.d_hat.unwrap_or_else(|| default_d_hat(model));
+    let d_hat = model
+        .contact
+        .d_hat
+        .unwrap_or_else(|| default_d_hat(model.shells.iter().map(|shell| size(&shell.surface))));
     let kappa = model
         .contact
         .kappa
-        .unwrap_or_else(|| default_kappa(model, d_hat));
+        .unwrap_or_else(|| default_kappa(model.shells.iter(), &model.gravity, d_hat));
     Some(Contact::new(
         CollisionMesh::new(bodies),
         planes,
@@ -438,7 +421,7 @@ fn check_explicit(model: &Model, masses: &[f64]) -> Result<(), BuildError> {
 }
 
 /// Largest reach of contact in mean edges: beyond it, elements would touch their neighbours' neighbours at rest.
-const LARGEST_REACH_BY_EDGE: f64 = 0.5;
+pub(super) const LARGEST_REACH_BY_EDGE: f64 = 0.5;
 
 /// Refuses a barrier that reaches beyond an element: its pairs would be all neighbours, and their number without bound.
 fn check_contact_reach(model: &Model) -> Result<(), BuildError> {
@@ -471,26 +454,29 @@ fn shell_body(shell: &Shell, first_dof: Dof) -> CollisionBody {
     }
 }
 
-fn default_d_hat(model: &Model) -> f64 {
-    let by_edge = model
-        .shells
-        .iter()
-        .map(|s| s.surface.mean_edge_length())
-        .fold(f64::INFINITY, f64::min);
-    let extent = |s: &Shell| {
-        let (low, high) = s.surface.bounding_box();
-        (high - low).norm()
-    };
-    let extent = model.shells.iter().map(extent).fold(0.0, f64::max);
-    (D_HAT_BY_EDGE * by_edge).min(D_HAT_BY_EXTENT * extent)
+/// Mean edge and extent of a surface [m].
+fn size(surface: &Surface) -> (f64, f64) {
+    let (low, high) = surface.bounding_box();
+    (surface.mean_edge_length(), (high - low).norm())
 }
 
-fn default_kappa(model: &Model, d_hat: f64) -> f64 {
+/// d̂ for surfaces of these mean edges and extents [m].
+pub(super) fn default_d_hat(sizes: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (edge, extent) = sizes.fold((f64::INFINITY, 0.0), |(edge, extent), size| {
+        (size.0.min(edge), size.1.max(extent))
+    });
+    (D_HAT_BY_EDGE * edge).min(D_HAT_BY_EXTENT * extent)
+}
+
+/// Stiffness of the barrier for shells under gravity.
+pub(super) fn default_kappa<'a>(
+    shells: impl Iterator<Item = &'a Shell>,
+    gravity: &Vec3,
+    d_hat: f64,
+) -> f64 {
     // Scenes without gravity are given the weight they would have on Earth: it only sets a scale.
-    let gravity = model.gravity.norm().max(9.81);
-    let weight = model
-        .shells
-        .iter()
+    let gravity = gravity.norm().max(9.81);
+    let weight = shells
         .map(|s| s.density * s.thickness * gravity)
         .fold(0.0, f64::max);
     BARRIER_PRESSURE_BY_WEIGHT * weight * d_hat

@@ -1,6 +1,7 @@
 //! From what was typed to a model that can be simulated: meshes read, selections resolved, plausibility checked.
 
 mod arc_length;
+mod bezier;
 mod burning;
 mod composition;
 mod deformation;
@@ -120,16 +121,24 @@ impl Builder<'_> {
         let double_layers = self.double_layers()?;
         let heated_shells = self.heated_shells(&shells)?;
         let heat_sources = self.heat_sources(&double_layers, &heated_shells)?;
-        let constraints = self.constraints(&shells)?;
-        let loads = self.loads(&shells)?;
+        let bezier = self.bezier()?;
+        let (constraints, loads, symmetry_planes) = match &bezier {
+            // Those of Bézier shells are with them.
+            Some(_) => Default::default(),
+            None => (
+                self.constraints(&shells)?,
+                self.loads(&shells)?,
+                self.symmetry_planes(&shells)?,
+            ),
+        };
         let energies = self.energies(&shells)?;
         let processes = self.processes(&shells)?;
-        let symmetry_planes = self.symmetry_planes(&shells)?;
         let (contact, solver) = (&spec.contact, SolverOptions::default());
         Ok(Model {
             shells,
             double_layers,
             heated_shells,
+            bezier,
             heat_sources,
             obstacles,
             constraints,
@@ -175,7 +184,10 @@ impl Builder<'_> {
     }
 
     fn shell(&self, shell: &ShellSpec) -> Result<Shell, SceneError> {
-        let path = format!("shell.{}", shell.name);
+        self.shell_at(&format!("shell.{}", shell.name), shell)
+    }
+
+    fn shell_at(&self, path: &str, shell: &ShellSpec) -> Result<Shell, SceneError> {
         let surface = self.mesh(&format!("{path}.mesh"), &shell.mesh)?;
         let rest_positions = match &shell.rest_mesh {
             None => surface.positions.clone(),
@@ -306,7 +318,7 @@ impl Builder<'_> {
     }
 
     fn shell_index(&self, path: &str, name: &str) -> Result<usize, SceneError> {
-        let index = self.spec.shell.iter().position(|shell| shell.name == name);
+        let index = (self.spec.shell_names().iter()).position(|shell| *shell == name);
         index.ok_or_else(|| {
             SceneError::new(Kind::UnknownName, format!("there is no shell '{name}'")).inside(path)
         })
@@ -343,11 +355,11 @@ impl Builder<'_> {
                 };
                 let selection = probe.select.as_ref().unwrap_or(&all);
                 let vertices: Vec<usize> =
-                    vertices(&path("select"), selection, &model.shells[shell])?
+                    vertices(&path("select"), selection, model.observed_shell(shell))?
                         .into_iter()
                         .map(|vertex| vertex.0 as usize)
                         .collect();
-                let positions = &model.shells[shell].surface.positions;
+                let positions = &model.observed_shell(shell).surface.positions;
                 let start = vertices.iter().map(|&vertex| positions[vertex]).collect();
                 ProbeTarget::Vertices {
                     quantity,

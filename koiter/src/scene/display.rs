@@ -1,5 +1,6 @@
 //! What is shown of a model: its shells, and obstacles as triangle meshes.
 
+use super::bezier::BezierBody;
 use super::model::{Model, Obstacle, ObstacleShape};
 use super::simulation::Simulation;
 use crate::Vec3;
@@ -27,7 +28,9 @@ pub struct PartTopology {
 /// Planes are shown as squares this many times the extent of the shells.
 const PLANE_EXTENT: f64 = 3.0;
 
-pub(super) fn tessellate(model: &Model) -> Vec<PartTopology> {
+pub(super) fn tessellate(model: &Model, bezier: Option<&BezierBody>) -> Vec<PartTopology> {
+    let bezier = bezier.zip(model.bezier.as_ref());
+    let bezier = bezier.map_or_else(Vec::new, |(body, model)| body.parts(model));
     let shells = model.shells.iter().map(|shell| PartTopology {
         name: shell.name.clone(),
         is_obstacle: false,
@@ -47,6 +50,7 @@ pub(super) fn tessellate(model: &Model) -> Vec<PartTopology> {
                 .clone()
                 .map(|layer| diagonal(&layer.setup.shell.particles)),
         )
+        .chain(bezier.iter().map(|part| diagonal(&part.start_positions)))
         .fold(1e-3, f64::max);
     let layers = layers.map(|layer| {
         let shell = &layer.setup.shell;
@@ -55,6 +59,7 @@ pub(super) fn tessellate(model: &Model) -> Vec<PartTopology> {
     });
     shells
         .chain(layers)
+        .chain(bezier)
         .chain(
             model
                 .obstacles
@@ -164,6 +169,9 @@ impl Simulation {
             let particles = &layer.state().positions;
             positions.extend(layer.surface().positions(&part.setup.shell, particles));
         }
+        if let Some(body) = &self.bezier {
+            positions.extend(body.display_positions());
+        }
         let shown = self.parts().iter().filter(|part| part.is_obstacle);
         let obstacles = self.model.obstacles.iter().zip(shown);
         for (obstacle, part) in obstacles {
@@ -172,9 +180,15 @@ impl Simulation {
         positions
     }
 
-    /// The surfaces to show as they are now, where their faces change from step to step: those that burn have
-    /// their present positions for a start. `None`: [`Self::parts`] are right throughout.
+    /// The surfaces to show as they are now, where their faces change from step to step: those that burn and those of Bézier shells
+    /// that are cut have their present positions for a start. `None`: [`Self::parts`] are right throughout.
     pub fn present_parts(&self) -> Option<Vec<PartTopology>> {
+        let obstacles = self.parts().iter().filter(|part| part.is_obstacle);
+        if let (Some(body), Some(model)) = (&self.bezier, &self.model.bezier) {
+            let is_whole = model.procedures.is_empty();
+            let changing = || body.parts(model).into_iter().chain(obstacles.cloned());
+            return (!is_whole).then(|| changing().collect());
+        }
         if self.burning.is_empty() && self.heated.is_empty() {
             return None;
         }
@@ -200,7 +214,6 @@ impl Simulation {
             let (shell, positions) = (&part.setup.shell, &layer.state().positions);
             layer_part(&part.name, shell, layer.surface(), positions)
         });
-        let obstacles = self.parts().iter().filter(|part| part.is_obstacle);
         Some(shells.chain(layers).chain(obstacles.cloned()).collect())
     }
 

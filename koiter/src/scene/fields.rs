@@ -4,13 +4,19 @@ use super::simulation::Simulation;
 
 impl Simulation {
     /// Values on the faces of all parts; zero on obstacles: largest principal Green strain, bending energy density
-    /// [J/m²], mean curvature [1/m], mean curvature at rest [1/m]; of what burns temperature [K] and mass ratio.
+    /// [J/m²], mean curvature [1/m], mean curvature at rest [1/m]; of what burns temperature [K] and mass ratio,
+    /// of Bézier shells strain and bending.
     pub fn face_fields(&self) -> Vec<(&'static str, Vec<f32>)> {
         let shells = &self.system.space.shells;
         let obstacles = self.parts().iter().filter(|part| part.is_obstacle);
         let on_obstacles: usize = obstacles.map(|part| part.faces.len()).sum();
-        if !self.burning.is_empty() {
-            return (self.burning_fields().into_iter())
+        let of_others = match &self.bezier {
+            Some(body) => Some(body.face_fields()),
+            None if self.burning.is_empty() => None,
+            None => Some(self.burning_fields()),
+        };
+        if let Some(fields) = of_others {
+            return (fields.into_iter())
                 .map(|(name, mut values)| {
                     values.extend(std::iter::repeat_n(0.0, on_obstacles));
                     (name, values)

@@ -1,6 +1,6 @@
 //! Which meshes a model is made of, as a number a body: a scene's text does not show that a mesh file was changed.
 
-use super::model::{Composition, Model, ObstacleShape, RestPrescription, Surface};
+use super::model::{Composition, FineSurface, Model, ObstacleShape, RestPrescription, Surface};
 use crate::Vec3;
 
 /// FNV-1a, 64 bits: two different meshes share it once in 10¹⁹; not meant against forgery.
@@ -44,7 +44,7 @@ impl Fnv {
 }
 
 impl Model {
-    /// Name of each shell, double layer, then obstacle, with a number that changes with any vertex or face of its mesh.
+    /// Name of each shell, double layer, Bézier shell, then obstacle, with a number that changes with any vertex or face of its mesh.
     pub fn fingerprints(&self) -> Vec<(String, u64)> {
         let shells = self.shells.iter().enumerate().map(|(index, shell)| {
             let mut hash = Fnv::new();
@@ -86,7 +86,21 @@ impl Model {
             }
             (obstacle.name.clone(), hash.0)
         });
-        shells.chain(layers).chain(obstacles).collect()
+        let bezier = self.bezier.iter().flat_map(|bezier| &bezier.parts);
+        let bezier = bezier.map(|part| {
+            let mut hash = Fnv::new();
+            hash.add_surface(&part.shell.surface);
+            hash.add_points(&part.normals);
+            if let FineSurface::Bound { surface, .. } = &part.surface {
+                hash.add_surface(surface);
+            }
+            (part.shell.name.clone(), hash.0)
+        });
+        shells
+            .chain(layers)
+            .chain(bezier)
+            .chain(obstacles)
+            .collect()
     }
 }
 

@@ -138,7 +138,7 @@ pub(super) fn vertex_forces(kind: &LoadKind, rest: &Surface) -> Vec<Vec3> {
                 }
             }
         }
-        LoadKind::Pressure { .. } | LoadKind::Moment { .. } => {}
+        LoadKind::Pressure { .. } | LoadKind::Moment { .. } | LoadKind::Turning { .. } => {}
     }
     forces
 }
@@ -182,7 +182,7 @@ fn turned_directors(part: &ShellPart, edge: EdgeId, moment: f64) -> TurnedDirect
 }
 
 /// The face of the first side of an edge that has one, and its corner opposite the edge.
-fn side(mesh: &TriMesh, edge: EdgeId) -> (usize, usize) {
+pub(super) fn side(mesh: &TriMesh, edge: EdgeId) -> (usize, usize) {
     let [first, second] = mesh.edge_faces()[edge.0 as usize];
     let face = first.or(second).expect("every edge has a face").0 as usize;
     let corner = mesh.face_edges()[face].iter().position(|e| *e == edge);
@@ -204,14 +204,25 @@ pub enum LoadTotal {
 impl Model {
     /// What a load adds up to.
     pub fn load_total(&self, load: &model::Load) -> LoadTotal {
-        let rest = rest_surface(&self.shells[load.shell]);
+        let rest = rest_surface(self.observed_shell(load.shell));
         match &load.kind {
             LoadKind::Pressure { pressure, .. } => LoadTotal::Pressure(*pressure),
             LoadKind::Moment { edges, moment } => {
                 let lengths = edges.iter().map(|edge| rest.edge_length(edge.0 as usize));
                 LoadTotal::Moment(moment * lengths.sum::<f64>())
             }
+            LoadKind::Turning { vertices, moment } => {
+                LoadTotal::Moment(moment.norm() * vertices.len() as f64)
+            }
             dead => LoadTotal::Force(vertex_forces(dead, &rest).iter().sum()),
+        }
+    }
+
+    /// The shell with an index, which is that of a Bézier shell where there are such.
+    pub fn observed_shell(&self, index: usize) -> &model::Shell {
+        match &self.bezier {
+            Some(bezier) => &bezier.parts[index].shell,
+            None => &self.shells[index],
         }
     }
 }

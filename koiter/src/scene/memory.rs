@@ -1,9 +1,10 @@
 //! How much memory a scene takes, estimated before it is taken.
 
 use super::error::{SceneError, SceneErrorKind};
-use super::model::{BendingModel, Model, ObstacleShape};
-use super::simulation::{BYTES_A_DOF, BYTES_A_QUAD, PROGRAM_BYTES};
+use super::model::{BendingModel, BezierPart, Model, ObstacleShape};
+use super::sizes::{BYTES_A_DOF, BYTES_A_QUAD, PROGRAM_BYTES};
 use super::spec::{MeshSpec, ObstacleSpec, SceneSpec, ShellSpec};
+use crate::bezier::NODE_UNKNOWNS;
 use crate::energy::bending::ExtraUnknowns;
 use crate::mesh::generate::face_count;
 
@@ -41,7 +42,12 @@ pub(super) fn check_spec(spec: &SceneSpec, available: u64) -> Result<(), SceneEr
         };
         layer_share(&layer.name, quads)
     });
-    check(shells.chain(layers).chain(obstacles).collect(), available)
+    let bezier = spec.bezier_shell.iter().map(|shell| {
+        let parts = shell.surface.subdivide as f64;
+        bezier_share(&shell.name, generated_faces(&shell.mesh), parts * parts)
+    });
+    let all = shells.chain(layers).chain(bezier).chain(obstacles);
+    check(all.collect(), available)
 }
 
 /// Refuses a model that will not fit, files included, before it is assembled.
@@ -61,7 +67,26 @@ pub(super) fn check_model(model: &Model, available: u64) -> Result<(), SceneErro
         .double_layers
         .iter()
         .map(|layer| layer_share(&layer.name, layer.setup.shell.mesh.quads().len() as f64));
-    check(shells.chain(layers).chain(obstacles).collect(), available)
+    let bezier = model.bezier.iter().flat_map(|bezier| {
+        let parts = bezier.subdivide as f64;
+        let share = move |part: &BezierPart| {
+            let faces = part.shell.surface.mesh.num_faces() as f64;
+            bezier_share(&part.shell.name, faces, parts * parts)
+        };
+        bezier.parts.iter().map(share)
+    });
+    let all = shells.chain(layers).chain(bezier).chain(obstacles);
+    check(all.collect(), available)
+}
+
+/// Elements with their nodes of six unknowns, and the triangles they are divided into.
+fn bezier_share(name: &str, elements: f64, fine: f64) -> Share {
+    let unknowns = NODE_UNKNOWNS as f64 * VERTICES_A_FACE;
+    Share {
+        path: format!("bezier_shell.{name}.mesh"),
+        faces: elements,
+        bytes: elements * (unknowns * BYTES_A_DOF as f64 + fine * BYTES_AN_OBSTACLE_FACE),
+    }
 }
 
 fn layer_share(name: &str, quads: f64) -> Share {

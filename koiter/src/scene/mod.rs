@@ -8,6 +8,7 @@ mod arc_length;
 mod assemble;
 mod bending_caveats;
 mod bending_models;
+mod bezier;
 mod burning;
 mod clamps;
 mod composition;
@@ -32,6 +33,7 @@ mod point_cache;
 mod position_bending;
 pub mod schedule;
 mod simulation;
+mod sizes;
 mod snapshot;
 mod step_control;
 mod symmetry;
@@ -73,6 +75,7 @@ pub use self::{
     arc_length::ArcLengthError,
     assemble::BuildError,
     bending_models::BendingModelInfo,
+    bezier::BezierState,
     composition_error::CompositionError,
     display::PartTopology,
     free_parts::FreePart,
@@ -82,7 +85,8 @@ pub use self::{
     outside::ChangeError,
     phases::{PhaseSteps, Timeline},
     point_cache::PointCache,
-    simulation::{Simulation, SystemStats},
+    simulation::Simulation,
+    sizes::SystemStats,
     snapshot::{RestoreError, Snapshot},
 };
 #[cfg(feature = "serde")]

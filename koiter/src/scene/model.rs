@@ -1,5 +1,6 @@
 //! A checked scene, ready to be simulated: shells, obstacles, constraints, loads.
 
+pub use super::bezier::{BezierModel, BezierPart, FineSurface, Procedure, ProcedureKind};
 pub use super::burning::{DoubleLayerPart, HeatSourcePart, Held};
 use crate::Vec3;
 use crate::mesh::{EdgeId, FaceId, VertexId};
@@ -267,6 +268,13 @@ pub enum LoadKind {
         /// The origin of volumes [m], which matters at free edges: see [`crate::energy::loads::Pressure`].
         origin: Vec3,
     },
+    /// The same moment on each of some vertices of a Bézier shell, about an axis that stays.
+    Turning {
+        /// The vertices.
+        vertices: Vec<VertexId>,
+        /// Moment on each [N·m].
+        moment: Vec3,
+    },
     /// A moment about edges that turns their directors, right-handed about the edge as its face traverses it, the surface
     /// on the left (an inner edge: from its smaller to its larger vertex). Only for bending models with directors.
     Moment {
@@ -443,6 +451,8 @@ pub struct Model {
     pub double_layers: Vec<DoubleLayerPart>,
     /// Shells that burn, of those above.
     pub heated_shells: Vec<HeatedPart>,
+    /// Bézier shells, with what holds, loads and changes them; a model has either these or shells.
+    pub bezier: Option<BezierModel>,
     /// Sources of heat, which act on double layers and on shells that burn.
     pub heat_sources: Vec<HeatSourcePart>,
     /// Obstacles.

@@ -140,9 +140,10 @@ impl<'a> Placement<'a> {
     }
 
     fn stand_up(&self, points: &mut [Vec3]) {
-        let scale = self.spec.units.in_metres() * self.spec.scale;
+        let stretch = Vec3::from(self.spec.stretch.unwrap_or([1.0; 3]));
+        let scale = stretch * (self.spec.units.in_metres() * self.spec.scale);
         for x in points {
-            *x *= scale;
+            x.component_mul_assign(&scale);
             if self.spec.up == UpAxis::Y {
                 *x = Vec3::new(x.x, -x.z, x.y);
             }

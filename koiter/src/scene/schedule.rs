@@ -69,7 +69,8 @@ impl Scaling {
 }
 
 impl Rotation {
-    fn turn(&self, t: f64) -> Rotation3<f64> {
+    /// By how much it turns until time `t` [s].
+    pub(super) fn turn(&self, t: f64) -> Rotation3<f64> {
         Rotation3::from_axis_angle(&Unit::new_unchecked(self.axis), self.angle.at(t))
     }
 }

@@ -2,12 +2,13 @@
 
 use super::arc_length;
 use super::assemble::{Assembly, BuildError, assemble, write_points};
+use super::bezier::BezierBody;
 use super::burning::Burning;
 use super::display::{PartTopology, tessellate};
 use super::heated::Heated;
 use super::holds::Holds;
 use super::loads::set_factors;
-use super::model::{BendingModel, IntegratorKind, Model, Phase, Shell};
+use super::model::{IntegratorKind, Model, Phase};
 use super::phases::phase_of_step;
 use super::processes::Processes;
 use super::symmetry::held_by;
@@ -40,48 +41,7 @@ pub struct Simulation {
     pub(super) load_pattern: Option<LoadPattern>,
     pub(super) burning: Burning,
     pub(super) heated: Heated,
-}
-
-/// Sizes of a simulation.
-#[derive(Clone, Debug, Default)]
-pub struct SystemStats {
-    /// Vertices of shells.
-    pub vertices: usize,
-    /// Faces of shells.
-    pub faces: usize,
-    /// Unknowns that are solved for.
-    pub dofs: usize,
-    /// Entries of the Hessian without contact, both triangles.
-    pub hessian_nonzeros: usize,
-    /// Memory a step takes, estimated [bytes].
-    pub estimated_memory_bytes: usize,
-    /// Names of the energies.
-    pub energies: Vec<String>,
-}
-
-/// Peaks of runs with BAC: 38 MB at 2.6k unknowns, 187 MB at 14k, 234 MB at 30k, 2.9 GB at 483k. Most is the factor.
-pub(super) const BYTES_A_DOF: usize = 6_000;
-/// Ten springs with their rows of a matrix, two particles, four triangles.
-pub(super) const BYTES_A_QUAD: usize = 4_000;
-/// The program itself, with its scene and pictures.
-pub(super) const PROGRAM_BYTES: usize = 40_000_000;
-
-/// Entries of the Hessian a face, both triangles, counted on large Delaunay meshes.
-fn nonzeros_a_face(bending: BendingModel) -> usize {
-    match bending {
-        // The membrane alone: 3 × 3 entries for a vertex with itself and six neighbours.
-        BendingModel::None => 31,
-        // Hinges add the six vertices opposite the edges around.
-        BendingModel::QbCr | BendingModel::DsTheta | BendingModel::DsTan | BendingModel::ChEs => 58,
-        // All within two edges.
-        BendingModel::QbPl | BendingModel::QbInt | BendingModel::ChFs | BendingModel::MeAverage => {
-            86
-        }
-        BendingModel::Bac | BendingModel::Dcs | BendingModel::Dso => 166,
-        // Six unknowns a vertex, which meets itself and six others.
-        BendingModel::Dkt => 126,
-        BendingModel::Ds2nd => 448,
-    }
+    pub(super) bezier: Option<BezierBody>,
 }
 
 impl Simulation {
@@ -117,7 +77,8 @@ impl Simulation {
                 double_layer,
                 error,
             })?;
-        let parts = tessellate(&model);
+        let bezier = BezierBody::new(&model)?;
+        let parts = tessellate(&model, bezier.as_ref());
         let holds = Holds::new(&model, clamps);
         let state = State {
             velocities,
@@ -138,6 +99,7 @@ impl Simulation {
             load_pattern,
             burning,
             heated,
+            bezier,
         })
     }
 
@@ -156,6 +118,9 @@ impl Simulation {
     fn step_in_pool(&mut self, dt: f64) -> Result<StepReport, StepError> {
         if !self.burning.is_empty() {
             return self.step_double_layers(dt);
+        }
+        if self.bezier.is_some() {
+            return self.step_bezier(dt);
         }
         self.enter_phase(self.state.step + 1);
         let mut report = self.step_elastic(dt)?;
@@ -345,11 +310,17 @@ impl Simulation {
 
     /// Vertex positions of a shell [m].
     pub fn shell_positions(&self, shell: usize) -> Vec<Vec3> {
+        if let Some(body) = &self.bezier {
+            return body.positions(shell);
+        }
         self.shell_points(shell, &self.state.q)
     }
 
     /// Vertex velocities of a shell [m/s].
     pub fn shell_velocities(&self, shell: usize) -> Vec<Vec3> {
+        if let Some(body) = &self.bezier {
+            return body.velocities(shell);
+        }
         self.shell_points(shell, &self.state.velocities)
     }
 
@@ -371,6 +342,9 @@ impl Simulation {
     /// The force that balances elasticity, damping, gravity, loads, contact and inertia of the last step at the held coordinates; where
     /// two constraints hold the same coordinate both are told its force.
     pub fn reaction(&self, constraint: usize) -> Vec3 {
+        if let Some(body) = &self.bezier {
+            return body.reaction(&self.model, constraint, self.time());
+        }
         let mut gradient = vec![0.0; self.system.layout.num_dofs()];
         for energy in &self.system.elastic {
             energy.add_gradient(&self.state.q, &mut gradient);
@@ -416,40 +390,15 @@ impl Simulation {
 
     /// Energies by name [J].
     pub fn energies(&self) -> Vec<(String, f64)> {
+        if let Some(body) = &self.bezier {
+            return body.energies(&self.model, self.time());
+        }
         self.system.energies(&self.state)
     }
 
     /// The surfaces to show: shells, then obstacles.
     pub fn parts(&self) -> &[PartTopology] {
         &self.parts
-    }
-
-    /// Sizes and costs.
-    pub fn stats(&self) -> SystemStats {
-        let sum = |f: &dyn Fn(&crate::mesh::TriMesh) -> usize| -> usize {
-            self.model.shells.iter().map(|s| f(&s.surface.mesh)).sum()
-        };
-        let dofs = self.system.layout.num_solved_dofs();
-        let nonzeros = |s: &Shell| s.surface.mesh.num_faces() * nonzeros_a_face(s.bending);
-        let hessian_nonzeros = self.model.shells.iter().map(nonzeros).sum();
-        let mut energies: Vec<String> = self.energies().into_iter().map(|(name, _)| name).collect();
-        energies.dedup();
-        if !self.burning.is_empty() {
-            // Springs that are projected have none.
-            energies.clear();
-        }
-        let layers = self.burning.shells.iter().map(|shell| &shell.setup().shell);
-        let quads: usize = layers.clone().map(|layer| layer.mesh.quads().len()).sum();
-        let particles: usize = layers.clone().map(|layer| layer.particles.len()).sum();
-        SystemStats {
-            // A double layer shows its corners and the centres of its quads, as many as it has particles.
-            vertices: sum(&|m| m.num_vertices()) + particles,
-            faces: sum(&|m| m.num_faces()) + 4 * quads,
-            dofs: dofs + 3 * particles,
-            hessian_nonzeros,
-            estimated_memory_bytes: PROGRAM_BYTES + dofs * BYTES_A_DOF + quads * BYTES_A_QUAD,
-            energies,
-        }
     }
 }
 

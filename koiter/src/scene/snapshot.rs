@@ -1,5 +1,6 @@
 //! What a simulation owes to its past, so that it can be left and taken up again to the same bits.
 
+use super::bezier::{BezierBody, BezierState};
 use super::holds::Anchor;
 use super::simulation::Simulation;
 use crate::assembly::Energy;
@@ -30,6 +31,8 @@ pub struct Snapshot {
     pub double_layers: Vec<BurningState>,
     /// Temperatures, masses and tears of the burning shells.
     pub heated_shells: Vec<HeatedState>,
+    /// The Bézier shells.
+    pub bezier: Option<BezierState>,
     /// What the linear solver keeps between steps.
     pub solver: WorkspaceHistory,
 }
@@ -55,6 +58,7 @@ impl Simulation {
             angles: self.system.branches(&self.state.q),
             double_layers: self.burning.states(),
             heated_shells: self.heated.states(),
+            bezier: self.bezier.as_ref().map(BezierBody::state),
             solver: self.system.workspace.history(),
         }
     }
@@ -66,6 +70,13 @@ impl Simulation {
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), RestoreError> {
         let refuse = |reason| RestoreError { reason };
         self.check(snapshot).map_err(refuse)?;
+        let bezier = match (&self.bezier, &snapshot.bezier) {
+            (None, None) => None,
+            (Some(_), Some(state)) => {
+                Some(BezierBody::restored(&self.model, state).map_err(refuse)?)
+            }
+            _ => return Err(refuse("it is of other kinds of shells".to_owned())),
+        };
         let workspace =
             LinearWorkspace::with_history(&snapshot.solver, &self.system.layout).map_err(refuse)?;
         (self.burning.restore(&snapshot.double_layers)).map_err(refuse)?;
@@ -74,6 +85,7 @@ impl Simulation {
             .restore(&mut self.system, &snapshot.heated_shells))
         .map_err(refuse)?;
         self.system.workspace = workspace;
+        self.bezier = bezier;
         self.state = snapshot.state.clone();
         self.processes.restore(&mut self.system, &snapshot.rests);
         self.system.restore_branches(&snapshot.angles);

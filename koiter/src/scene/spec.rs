@@ -18,6 +18,7 @@
 //! # Ok::<(), koiter::scene::SceneError>(())
 //! ```
 
+mod bezier_shell;
 mod check;
 mod constraint;
 mod contact;
@@ -30,11 +31,13 @@ mod material;
 mod newmark;
 mod obstacle;
 mod phase;
+mod procedure;
 mod process;
 mod shape;
 mod strain_limit;
 mod symmetry;
 
+pub use bezier_shell::{BezierShellSpec, FineSurfaceSpec};
 pub use check::MAX_STEPS;
 pub use constraint::{BoundsSpec, ConstraintSpec, SelectSpec};
 pub use contact::{ContactSpec, PairSpec};
@@ -50,6 +53,7 @@ pub use material::{LayerSpec, MaterialSpec};
 pub use newmark::NewmarkSpec;
 pub use obstacle::{AnimationSpec, DeformSpec, ObstacleSpec};
 pub use phase::PhaseSpec;
+pub use procedure::{CloseSpec, CutSpec, OpenSpec, PatchSpec, ProcedureSpec, RowSpec, SewSpec};
 pub use process::{CreaseSpec, CurlSpec, ProcessSpec, YieldSpec};
 pub use shape::{
     BoxSpec, CapsuleSpec, CylinderBodySpec, MeshSpec, PlaneSpec, RotationSpec, SphereSpec, Units,
@@ -104,6 +108,12 @@ pub struct SceneSpec {
     /// Shells that burn: two layers of springs; in place of elastic shells.
     #[serde(default)]
     pub double_layer: Vec<DoubleLayerSpec>,
+    /// Smooth shells of few elements that can be cut and sewn; in place of elastic shells.
+    #[serde(default)]
+    pub bezier_shell: Vec<BezierShellSpec>,
+    /// What is done to Bézier shells, in the order of time.
+    #[serde(default)]
+    pub procedure: Vec<ProcedureSpec>,
     /// What heats double layers, and shells that burn.
     #[serde(default)]
     pub heat_source: Vec<HeatSourceSpec>,
@@ -373,7 +383,8 @@ impl Default for OutputSpec {
 }
 
 /// Names of the energies that a probe can measure; one that a scene has not is 0.
-pub const ENERGY_NAMES: [&str; 8] = [
+pub const ENERGY_NAMES: [&str; 9] = [
+    "elastic",
     "membrane",
     "strain_limit",
     "bending",

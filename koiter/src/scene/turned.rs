@@ -13,7 +13,11 @@ impl Model {
     /// them free, or by planes of symmetry.
     pub fn turned(&self, rotation: &Rotation3<f64>) -> Option<Self> {
         let is_tied = |constraint: &Constraint| constraint.axes != [true; 3];
-        if !self.symmetry_planes.is_empty() || self.constraints.iter().any(is_tied) {
+        // Bézier shells have constraints and planes of their own.
+        if self.bezier.is_some()
+            || !self.symmetry_planes.is_empty()
+            || self.constraints.iter().any(is_tied)
+        {
             return None;
         }
         let turn = |v: Vec3| rotation * v;
@@ -126,6 +130,7 @@ fn turned_load(load: &Load, rotation: &Rotation3<f64>) -> Load {
         | LoadKind::Edge { force, .. }
         | LoadKind::Area { force, .. } => *force = rotation * *force,
         LoadKind::Pressure { origin, .. } => *origin = rotation * *origin,
+        LoadKind::Turning { moment, .. } => *moment = rotation * *moment,
         LoadKind::Moment { .. } => {}
     }
     turned

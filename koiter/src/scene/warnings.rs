@@ -4,7 +4,7 @@ use super::bending_caveats::bending_caveat;
 use super::error::Warning;
 use super::free_parts::FreePart;
 use super::model::{MembraneModel, Model, Motion, ObstacleShape, Shell};
-use super::spec::{MeshSpec, SceneSpec, Units};
+use super::spec::{MeshSpec, SceneSpec, ShellSpec, Units};
 
 /// Softer than any gel, harder than diamond.
 const PLAUSIBLE_YOUNG: [f64; 2] = [1e3, 1e12];
@@ -28,8 +28,17 @@ const THICKNESS_TO_EDGE: f64 = 0.1;
 /// Everything implausible, in the order of the shells; locations are not yet known.
 pub(super) fn find(model: &Model, spec: &SceneSpec) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    for (shell, typed) in model.shells.iter().zip(&spec.shell) {
-        let path = format!("shell.{}", shell.name);
+    let bezier: Vec<ShellSpec> = spec.bezier_shell.iter().map(|s| s.as_shell()).collect();
+    let of_bezier = model.bezier.iter().flat_map(|bezier| &bezier.parts);
+    let of_bezier = of_bezier.map(|part| &part.shell).zip(&bezier);
+    let all = (model
+        .shells
+        .iter()
+        .zip(&spec.shell)
+        .map(|pair| ("shell", pair)))
+    .chain(of_bezier.map(|pair| ("bezier_shell", pair)));
+    for (table, (shell, typed)) in all {
+        let path = format!("{table}.{}", shell.name);
         let preset = typed.material.preset.is_some();
         if !preset || typed.material.young.is_some() {
             warnings.extend(check_young(shell, &path));

@@ -22,6 +22,7 @@ fn rest() -> RestElement {
         corners,
         normals: corners.map(|x| (normal + 0.3 * (x - centroid)).normalize()),
         attached: [UnitQuaternion::identity(); 3],
+        section: SECTION,
     }
 }
 
@@ -30,11 +31,12 @@ fn flat(points: [[f64; 2]; 3]) -> RestElement {
         corners: points.map(|[x, y]| Vec3::new(x, y, 0.0)),
         normals: [Vec3::z(); 3],
         attached: [UnitQuaternion::identity(); 3],
+        section: SECTION,
     }
 }
 
 fn element(rest: &RestElement, kind: ElementKind, rule: FrameRule) -> Element {
-    Element::new(rest, kind, rule, &SECTION, 0).unwrap()
+    Element::new(rest, kind, rule, 0).unwrap()
 }
 
 const RULES: [FrameRule; 3] = [FrameRule::Polar, FrameRule::Edge, FrameRule::PRINTED];
@@ -296,7 +298,7 @@ fn a_rectangle_of_two_optimal_triangles_bends_exactly_in_its_plane() {
 fn an_inverted_or_flat_element_is_refused() {
     let mut rest = rest();
     rest.normals[1] = -rest.normals[1];
-    let made = Element::new(&rest, ElementKind::Bezier, FrameRule::Polar, &SECTION, 7);
+    let made = Element::new(&rest, ElementKind::Bezier, FrameRule::Polar, 7);
     assert_eq!(
         made.err(),
         Some(BezierError::Inverted {
@@ -305,7 +307,7 @@ fn an_inverted_or_flat_element_is_refused() {
         })
     );
     rest.corners[2] = 0.5 * (rest.corners[0] + rest.corners[1]);
-    let made = Element::new(&rest, ElementKind::Bezier, FrameRule::Polar, &SECTION, 7);
+    let made = Element::new(&rest, ElementKind::Bezier, FrameRule::Polar, 7);
     assert_eq!(made.err(), Some(BezierError::NoArea { element: 7 }));
 }
 
@@ -323,6 +325,7 @@ fn the_response_does_not_depend_on_which_corner_comes_first() {
                 corners: order.map(|i| rest.corners[i]),
                 normals: order.map(|i| rest.normals[i]),
                 attached: rest.attached,
+                section: rest.section,
             };
             let state = element(&other, kind, FrameRule::Polar)
                 .state(&order.map(|i| x[i]), &order.map(|i| turns[i]))

@@ -18,7 +18,7 @@ pub(super) fn present_parts(simulation: &Simulation) -> Option<FrameTopology> {
 /// Numbers the vertices and faces of all parts through.
 fn number(model: &Model, shown: &[PartTopology]) -> (Vec<Part>, Vec<[u32; 3]>) {
     let (mut parts, mut faces) = (Vec::new(), Vec::new());
-    let simulated = model.shells.len() + model.double_layers.len();
+    let simulated = shown.iter().filter(|part| !part.is_obstacle).count();
     let solids = (0..simulated).map(|_| None);
     let solids = solids.chain(model.obstacles.iter().map(Obstacle::solid));
     let mut first_vertex = 0;

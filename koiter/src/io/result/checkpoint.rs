@@ -15,6 +15,9 @@
 //! list of lists of f64: angles of hinges
 //! list of double layers: lists of f64: positions, velocities, temperatures, mass ratios
 //! list of burning shells: lists of f64: temperatures, mass ratios; list of u32: torn faces
+//! list of none or one, the Bézier shells: list of poses: what procedures found  pose  list of f64: velocities
+//!   list of u32 × 2: couplings  f64 barrier stiffness  list of f64 × 3: points of obstacles
+//!   a pose is a list of f64 × 3: positions, and a list of f64 × 4: rotations, as i, j, k, w
 //! list of u32 × 2: couplings by contacts  list of u32: elimination order  u64 factor entries when it was made
 //! u64 × 4 Newton iterations, steps not converged, steps in parts, intersections  f64 × 2 smallest gap, seconds
 //! list of parts of the run: text name, f64 seconds  list of f64: last values of the probes
@@ -22,6 +25,8 @@
 //! ```
 //!
 //! Numbers are little-endian; a text is its length as u32 and its bytes, a list its length as u64 and its items.
+
+mod bezier;
 
 use std::path::Path;
 
@@ -38,7 +43,7 @@ use crate::scene::{Anchor, Snapshot};
 use crate::solve::WorkspaceHistory;
 
 const MAGIC: &[u8; 8] = b"KOITERCP";
-const FORMAT: u32 = 9;
+const FORMAT: u32 = 10;
 
 /// All that is needed to go on with a run to the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -179,6 +184,7 @@ impl Checkpoint {
             out.numbers(&shell.mass_ratios);
             out.list(&shell.torn, |out, face| out.u32(*face));
         });
+        out.list(snapshot.bezier.as_slice(), Bytes::bezier);
         let WorkspaceHistory {
             changing_pairs,
             node_order,
@@ -319,6 +325,7 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
             torn: list(reader, 4, ByteReader::u32)?,
         })
     })?;
+    let bezier = list(reader, 48, bezier::bezier)?.pop();
     let solver = WorkspaceHistory {
         changing_pairs: list(reader, 8, |reader| Some([reader.u32()?, reader.u32()?]))?,
         node_order: list(reader, 4, ByteReader::u32)?,
@@ -344,6 +351,7 @@ fn read_body(reader: &mut ByteReader) -> Option<Checkpoint> {
         angles,
         double_layers,
         heated_shells,
+        bezier,
         solver,
     };
     Some(Checkpoint {

@@ -63,6 +63,12 @@ fn load_kind(load: &LoadSpec, shell: &Shell) -> Result<LoadKind, SceneError> {
             moment,
         });
     }
+    if let Some(moment) = load.moment_each {
+        return Ok(LoadKind::Turning {
+            vertices: selected,
+            moment: Vec3::from(moment),
+        });
+    }
     Ok(LoadKind::Point {
         vertices: selected,
         force: Vec3::from(load.force_each.unwrap_or_default()),

@@ -193,6 +193,7 @@ impl Measurement<'_> {
             shells: vec![shell],
             double_layers: Vec::new(),
             heated_shells: Vec::new(),
+            bezier: None,
             heat_sources: Vec::new(),
             obstacles: Vec::new(),
             constraints: Vec::new(),

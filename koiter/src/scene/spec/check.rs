@@ -1,5 +1,6 @@
 //! Checks that need no mesh: ranges, names, and keys that must stand alone.
 
+mod bezier_shell;
 mod double_layer;
 mod friction;
 mod heated;
@@ -35,7 +36,7 @@ pub(super) type Checked = Result<(), SceneError>;
 /// Checks a whole scene; the first mistake is returned with its path.
 pub(super) fn check(spec: &SceneSpec) -> Checked {
     phases::check_phases(spec)?;
-    if spec.shell.is_empty() && spec.double_layer.is_empty() {
+    if spec.shell_names().is_empty() && spec.double_layer.is_empty() {
         return Err(error(
             Kind::MissingKey,
             "",
@@ -44,6 +45,7 @@ pub(super) fn check(spec: &SceneSpec) -> Checked {
     }
     double_layer::check_double_layers(spec)?;
     heated::check_heated(spec)?;
+    bezier_shell::check_bezier_shells(spec)?;
     if let Some(schedule) = &spec.gravity_scale {
         check_schedule("gravity_scale", schedule)?;
     }
@@ -150,6 +152,9 @@ fn check_mesh(path: &str, mesh: &MeshSpec) -> Checked {
         ));
     }
     positive(&format!("{path}.scale"), mesh.scale, "")?;
+    for (axis, factor) in mesh.stretch.iter().flatten().enumerate() {
+        positive(&format!("{path}.stretch.{axis}"), *factor, "")?;
+    }
     mesh.rotate.as_ref().map_or(Ok(()), |rotate| {
         check_rotation(&format!("{path}.rotate"), rotate)
     })
@@ -216,10 +221,10 @@ fn check_symmetry(path: &str, plane: &SymmetrySpec, spec: &SceneSpec) -> Checked
 }
 
 pub(super) fn check_shell_name(path: &str, name: &str, spec: &SceneSpec) -> Checked {
-    if spec.shell.iter().any(|shell| shell.name == name) {
+    let names = spec.shell_names();
+    if names.contains(&name) {
         return Ok(());
     }
-    let names: Vec<&str> = spec.shell.iter().map(|shell| shell.name.as_str()).collect();
     Err(error(
         Kind::UnknownName,
         path,

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::SelectSpec;
 use crate::scene::schedule::Schedule;
 
-/// `[[load]]`: exactly one of `force`, `force_each`, `force_per_length`, `force_per_area`, `pressure` and
-/// `moment_per_length`.
+/// `[[load]]`: exactly one of `force`, `force_each`, `force_per_length`, `force_per_area`, `pressure`, `moment_per_length` and
+/// `moment_each`.
 ///
 /// Lengths and areas are those of the rest shape. Forces keep their direction; pressure and moments follow the shell.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -39,6 +39,9 @@ pub struct LoadSpec {
     /// Moment by length about edges [N·m/m]; positive leans the directors of a boundary outwards.
     #[serde(default)]
     pub moment_per_length: Option<f64>,
+    /// Moment on each vertex of a Bézier shell, about axes that stay [N·m].
+    #[serde(default)]
+    pub moment_each: Option<[f64; 3]>,
     /// Which edges, for loads by length.
     #[serde(default)]
     pub edges: EdgeChoice,
@@ -72,6 +75,7 @@ impl LoadSpec {
             ("force_per_area", self.force_per_area.is_some()),
             ("pressure", self.pressure.is_some()),
             ("moment_per_length", self.moment_per_length.is_some()),
+            ("moment_each", self.moment_each.is_some()),
         ]
         .into_iter()
         .filter_map(|(name, given)| given.then_some(name))

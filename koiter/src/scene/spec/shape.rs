@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// A mesh: exactly one of `file` and the generators, then placed.
 ///
-/// Placed in this order: units and scale, up axis, centring, rotation, translation.
+/// Placed in this order: units, scale and stretch, up axis, centring, rotation, translation.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshSpec {
@@ -54,6 +54,9 @@ pub struct MeshSpec {
     /// Factor on all lengths.
     #[serde(default = "one")]
     pub scale: f64,
+    /// Factors on lengths along x, y and z, besides: a ball becomes an ellipsoid.
+    #[serde(default)]
+    pub stretch: Option<[f64; 3]>,
     /// Axis of the file that points up.
     #[serde(default)]
     pub up: UpAxis,

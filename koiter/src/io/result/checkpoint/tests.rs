@@ -1,4 +1,8 @@
+use nalgebra::UnitQuaternion;
+
 use super::*;
+use crate::bezier::Pose;
+use crate::scene::BezierState;
 
 fn checkpoint() -> Checkpoint {
     Checkpoint {
@@ -48,6 +52,14 @@ fn checkpoint() -> Checkpoint {
                 mass_ratios: vec![1.0, 0.75],
                 torn: vec![3, 17],
             }],
+            bezier: Some(BezierState {
+                done: vec![pose(1)],
+                pose: pose(2),
+                velocities: vec![0.5; 12],
+                couplings: vec![[0, 1]],
+                kappa: 3.5,
+                obstacles: vec![Vec3::y()],
+            }),
             solver: WorkspaceHistory {
                 changing_pairs: vec![[0, 1], [0, 7]],
                 node_order: vec![2, 0, 1],
@@ -60,6 +72,14 @@ fn checkpoint() -> Checkpoint {
             probes: vec![0.5, 2.5],
             ..Totals::default()
         },
+    }
+}
+
+fn pose(nodes: usize) -> Pose {
+    let turn = UnitQuaternion::from_scaled_axis(Vec3::new(0.3, -2.0, 0.1));
+    Pose {
+        positions: vec![Vec3::new(0.1, -2.5, 1e-300); nodes],
+        rotations: vec![turn; nodes],
     }
 }
 

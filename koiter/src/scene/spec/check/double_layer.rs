@@ -47,6 +47,7 @@ pub(super) fn check_double_layers(spec: &SceneSpec) -> Checked {
 fn check_company(spec: &SceneSpec) -> Checked {
     let others = [
         ("shell", !spec.shell.is_empty()),
+        ("bezier_shell", !spec.bezier_shell.is_empty()),
         ("phase", !spec.phase.is_empty()),
         ("symmetry", !spec.symmetry.is_empty()),
         ("load", !spec.load.is_empty()),

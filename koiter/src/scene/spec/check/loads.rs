@@ -5,7 +5,7 @@ use crate::energy::bending::ExtraUnknowns;
 use crate::scene::spec::{EdgeChoice, LoadSpec, SceneSpec};
 
 const KINDS: &str =
-    "force, force_each, force_per_length, force_per_area, pressure, moment_per_length";
+    "force, force_each, force_per_length, force_per_area, pressure, moment_per_length, moment_each";
 
 pub(super) fn check_load(load: &LoadSpec, spec: &SceneSpec) -> Checked {
     let path = format!("load.{}", load.name);
@@ -52,6 +52,11 @@ pub(super) fn check_load(load: &LoadSpec, spec: &SceneSpec) -> Checked {
             return Err(error(Kind::MissingKey, &path, message)
                 .with_help("give some of all = true, box, vertices, boundary, nearest"));
         }
+    }
+    if kind == "moment_each" && spec.bezier_shell.is_empty() {
+        let message = "only the vertices of Bézier shells turn".to_owned();
+        return Err(error(Kind::Conflict, &at(kind), message)
+            .with_help("moment_per_length turns the directors of edges"));
     }
     if kind == "moment_per_length" {
         check_directors(&at(kind), load, spec)?;

@@ -1,0 +1,358 @@
+//! Scenes with Bézier shells: what is refused, what they give, and that a saved run goes on to the same bits.
+#![cfg(feature = "io")]
+
+use std::time::Duration;
+
+use koiter::Vec3;
+use koiter::bezier::Drag;
+use koiter::io::Checkpoint;
+use koiter::io::result::Totals;
+use koiter::scene::{NoFiles, Scene, SceneError, SceneFile, Simulation};
+
+/// A tube that is cut open, pulled apart and patched.
+const VESSEL: &str = r#"
+time = { end = 1.0, dt = 0.02 }
+gravity = [0, 0, 0]
+[[bezier_shell]]
+name = "vessel"
+mesh.cylinder = { radius = 0.01, height = 0.04, around = 12, along = 12 }
+material = { young = 5e5, poisson = 0.4, density = 1100 }
+thickness = 1e-3
+damping = 20
+surface.subdivide = 2
+[[constraint]]
+name = "foot"
+shell = "vessel"
+select.box = { max = [1, 1, -0.0199] }
+clamp = true
+[[constraint]]
+name = "head"
+shell = "vessel"
+select.box = { min = [-1, -1, 0.0199] }
+clamp = true
+motion.translate = [[0, [0, 0, 0]], [0.2, [0, 0, 1e-3]]]
+motion.rotate = { axis = [0, 0, 1], degrees = [[0, 0], [0.2, 10]] }
+[[procedure]]
+name = "incision"
+at = 0.04
+cut = { shell = "vessel", path = [[0.01, 0, -0.011], [0.01, 0, 0.011]] }
+[[procedure]]
+name = "hooks"
+at = 0.04
+open = { cut = "incision", force = 0.02, lift = 0.01, ramp = 0.06, until = 0.12 }
+[[procedure]]
+name = "patch"
+at = 0.12
+patch = { cut = "incision", width = 0.01, across = 4 }
+[[probe]]
+name = "head_height"
+quantity = "position"
+shell = "vessel"
+select.box = { min = [-1, -1, 0.0199] }
+axis = "z"
+[contact]
+enabled = false
+"#;
+
+/// A plate that a ball dents.
+const PLATE: &str = r#"
+time = { end = 0.4, dt = 0.02 }
+gravity = [0, 0, 0]
+[[bezier_shell]]
+name = "plate"
+mesh.grid = { size = [0.2, 0.2], cells = [6, 6] }
+material = { young = 1e6, poisson = 0.3, density = 1000 }
+thickness = 4e-3
+contact_thickness = 4e-3
+damping = 5
+friction = 0.5
+[[constraint]]
+name = "rim"
+shell = "plate"
+select.boundary = 0
+[[obstacle]]
+name = "ball"
+sphere = { radius = 0.03 }
+translate = [0.01, 0, 0.034]
+friction = 0.5
+motion.translate = [[0, [0, 0, 0]], [0.4, [0, 0, -0.02]]]
+[contact]
+d_hat = 1e-3
+kappa = 20.0
+[[probe]]
+name = "lowest"
+quantity = "lowest"
+shell = "plate"
+[[probe]]
+name = "push"
+quantity = "reaction"
+constraint = "rim"
+axis = "z"
+"#;
+
+fn build(text: &str, overrides: &[&str]) -> Result<Scene, SceneError> {
+    let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
+    let file = SceneFile::parse("scene.toml", text, &overrides)?;
+    Scene::build(&file, &NoFiles)
+}
+
+fn simulation(text: &str) -> Simulation {
+    Simulation::new(build(text, &[]).unwrap().model).unwrap()
+}
+
+fn through_a_file(simulation: &Simulation) -> Checkpoint {
+    let checkpoint = Checkpoint {
+        version: String::new(),
+        scene_text: String::new(),
+        bodies: Vec::new(),
+        snapshot: simulation.snapshot(),
+        totals: Totals::default(),
+    };
+    Checkpoint::from_bytes(&checkpoint.to_bytes()).unwrap()
+}
+
+#[test]
+fn a_run_from_any_checkpoint_has_the_same_bits() {
+    for (text, steps) in [(VESSEL, 9), (PLATE, 6)] {
+        let (mut through, mut paused) = (simulation(text), simulation(text));
+        for _ in 0..steps {
+            let report = through.step(0.02).unwrap();
+            assert!(report.converged, "{:?}", report.diagnosis);
+            let again = through_a_file(&paused);
+            paused = simulation(text);
+            paused.restore(&again.snapshot).unwrap();
+            paused.step(0.02).unwrap();
+        }
+        assert_eq!(through.snapshot(), paused.snapshot());
+        let mut wrong = through.snapshot();
+        wrong.bezier.as_mut().unwrap().velocities.pop();
+        assert!(through.restore(&wrong).is_err());
+        assert_eq!(through.snapshot(), paused.snapshot());
+    }
+}
+
+#[test]
+fn frames_have_the_faces_there_are_and_procedures_leave_them_whole() {
+    let mut simulation = simulation(VESSEL);
+    let count = |simulation: &Simulation| {
+        let parts = simulation.present_parts().unwrap();
+        let vertices: usize = parts.iter().map(|part| part.num_vertices).sum();
+        assert_eq!(simulation.display_positions().len(), vertices);
+        let faces: usize = parts.iter().map(|part| part.faces.len()).sum();
+        for (_, values) in simulation.face_fields() {
+            assert_eq!(values.len(), faces);
+            assert!(values.iter().all(|value| value.is_finite()));
+        }
+        (parts.len(), faces)
+    };
+    let whole = count(&simulation);
+    assert_eq!(whole, (1, 2 * 12 * 12 * 4));
+    for _ in 0..8 {
+        simulation.step(0.02).unwrap();
+    }
+    let patched = count(&simulation);
+    // Divided elements, and a patch of eight or more, of four triangles each; results have as many parts as at the start.
+    assert_eq!(patched.0, 1);
+    assert!(patched.1 > whole.1 + 4 * 8, "{patched:?}");
+    // The upper end is held and has been moved.
+    let head = &simulation.shell_positions(0)[12 * 12];
+    assert!((head.z - 0.02 - 0.8e-3).abs() < 1e-12, "{head}");
+    let energy = |name: &str| {
+        let energies = simulation.energies();
+        energies.iter().find(|(n, _)| n == name).unwrap().1
+    };
+    assert!(energy("elastic") > 0.0 && energy("kinetic") > 0.0);
+}
+
+#[test]
+fn a_ball_dents_a_plate_and_the_rim_carries_it() {
+    let scene = build(PLATE, &[]).unwrap();
+    let mut simulation = Simulation::new(scene.model).unwrap();
+    let mut pushed = 0.0;
+    for _ in 0..20 {
+        let report = simulation.step(0.02).unwrap();
+        assert!(report.converged, "{:?}", report.diagnosis);
+        pushed = report
+            .measures
+            .iter()
+            .find(|m| m.0 == "pushed_vertices")
+            .unwrap()
+            .1;
+    }
+    assert!(pushed > 0.0);
+    let [lowest, push] = [0, 1].map(|k| scene.probes[k].measure(&simulation)[0]);
+    // The ball stands 16 mm below where it would touch; the barrier keeps up to a millimetre between.
+    assert!((-0.0185..-0.0145).contains(&lowest), "{lowest}");
+    // The plate pushes back: its rim is held down against nothing but the ball.
+    assert!(push > 0.0, "{push}");
+}
+
+#[test]
+fn a_roof_is_the_roof_of_the_bench() {
+    let text = include_str!("../../scenes/scordelis-lo-bezier/scene.toml");
+    // The table of benchmarks/bezier-shell: 1 %.
+    for (element, expected) in [
+        ("bezier", 0.1448),
+        ("bezier-paper", 0.1195),
+        ("dkt-andes", 0.1519),
+    ] {
+        let element = format!("bezier_shell.roof.element=\"{element}\"");
+        let scene = build(text, &["resolution=tiny", &element]).unwrap();
+        let mut simulation = Simulation::new(scene.model).unwrap();
+        assert!(simulation.step(1.0).unwrap().converged);
+        let sinks = -scene.probes[0].measure(&simulation)[0];
+        assert!((sinks / expected - 1.0).abs() < 0.01, "{element}: {sinks}");
+        // 90 an area of the quarter.
+        let weight = 90.0 * 25.0 * 25.0 * 40f64.to_radians();
+        let support = scene.probes[1].measure(&simulation)[0];
+        // Symmetry planes carry nothing of it; facets of 5° are smaller than the cylinder by 3e-4.
+        assert!((support / weight - 1.0).abs() < 1e-3, "{support} {weight}");
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_where_it_stands() {
+    let cases = [
+        (
+            VESSEL,
+            "bezier_shell.vessel.thicknes=1",
+            "bezier_shell.vessel.thicknes",
+        ),
+        (
+            VESSEL,
+            "bezier_shell.vessel.thickness=-1",
+            "bezier_shell.vessel.thickness",
+        ),
+        (
+            VESSEL,
+            "bezier_shell.vessel.thickness=nan",
+            "bezier_shell.vessel.thickness",
+        ),
+        (
+            VESSEL,
+            "bezier_shell.vessel.element=\"bezir\"",
+            "bezier_shell.vessel.element",
+        ),
+        (
+            VESSEL,
+            "bezier_shell.vessel.damping=-1",
+            "bezier_shell.vessel.damping",
+        ),
+        (
+            VESSEL,
+            "bezier_shell.vessel.surface.subdivide=0",
+            "bezier_shell.vessel.surface.subdivide",
+        ),
+        (
+            VESSEL,
+            "bezier_shell.vessel.material.model=\"neo-hookean\"",
+            "bezier_shell.vessel.material.model",
+        ),
+        (
+            VESSEL,
+            "constraint.foot.shell=\"vesel\"",
+            "constraint.foot.shell",
+        ),
+        (VESSEL, "constraint.foot.from=0.1", "constraint.foot.from"),
+        (VESSEL, "integrator=\"bdf2\"", "integrator"),
+        (VESSEL, "contact.enabled=true", "contact.enabled"),
+        (VESSEL, "procedure.hooks.at=-1", "procedure.hooks.at"),
+        (VESSEL, "procedure.hooks.at=0.01", "procedure.hooks.at"),
+        (
+            VESSEL,
+            "procedure.hooks.open.cut=\"incison\"",
+            "procedure.hooks.open.cut",
+        ),
+        (
+            VESSEL,
+            "procedure.incision.cut.path=[[0.01,0,0]]",
+            "procedure.incision.cut.path",
+        ),
+        // Beyond the end of the tube, and through its middle to the other side.
+        (
+            VESSEL,
+            "procedure.incision.cut.path=[[0.01,0,0],[0.01,0,0.09]]",
+            "procedure.incision.cut.path",
+        ),
+        (
+            VESSEL,
+            "procedure.incision.cut.path=[[0.01,0,0],[nan,0,0]]",
+            "procedure.incision.cut.path",
+        ),
+        (
+            VESSEL,
+            "procedure.patch.patch.width=0",
+            "procedure.patch.patch.width",
+        ),
+        (
+            VESSEL,
+            "procedure.patch.patch.across=1",
+            "procedure.patch.patch.across",
+        ),
+        (
+            PLATE,
+            "obstacle.ball.sphere.radius=-1",
+            "obstacle.ball.sphere.radius",
+        ),
+    ];
+    for (text, change, path) in cases {
+        let error = build(text, &[change]).map(|_| ()).expect_err(change);
+        assert_eq!(error.path, path, "{change}: {error}");
+    }
+    // A start that touches, a barrier as large as the triangles, a fine surface far away.
+    for change in [
+        "obstacle.ball.translate=[0.01,0,0.031]",
+        "contact.d_hat=0.05",
+        "bezier_shell.plate.surface.mesh={grid={size=[0.2,0.2],cells=[8,8]},translate=[0,0,1]}",
+    ] {
+        let scene = build(PLATE, &[change]).unwrap();
+        assert!(Simulation::new(scene.model).is_err(), "{change}");
+    }
+}
+
+#[test]
+fn a_mesh_that_is_bound_to_a_shell_goes_with_it_and_is_divided_by_a_cut() {
+    let fine =
+        "bezier_shell.vessel.surface.mesh={cylinder={radius=0.01,height=0.04,around=40,along=40}}";
+    let scene = build(VESSEL, &[fine]).unwrap();
+    let mut simulation = Simulation::new(scene.model).unwrap();
+    let faces = |simulation: &Simulation| -> Vec<usize> {
+        let parts = simulation.present_parts().unwrap();
+        parts.iter().map(|part| part.faces.len()).collect()
+    };
+    assert_eq!(faces(&simulation), [2 * 40 * 40]);
+    for _ in 0..8 {
+        simulation.step(0.02).unwrap();
+    }
+    let now = faces(&simulation);
+    // Divided along 22 of 40 mm, a millimetre each, and a patch beside it.
+    assert!(now[0] > 2 * 40 * 40 + 2 * 20 + 4 * 8, "{now:?}");
+}
+
+#[test]
+fn shells_of_a_scene_can_be_dragged_and_do_not_go_through_obstacles() {
+    let mut simulation = simulation(PLATE);
+    simulation.step(0.02).unwrap();
+    let mut played = simulation.interaction(0.02).unwrap();
+    let shell = &played.dynamics.shell;
+    let (_, point) = shell.nearest(&Vec3::new(0.01, 0.0, 0.0), |_| true).unwrap();
+    // Upwards into the ball, whose lowest point stands 4 mm above the midsurface at the start.
+    let target = Vec3::new(0.01, 0.0, 0.02);
+    played.drags.push(Drag {
+        point,
+        target,
+        stiffness: 50.0,
+    });
+    for _ in 0..40 {
+        let report = played.frame(Duration::from_secs(10));
+        assert!(!report.held, "{report:?}");
+    }
+    let contact = played.contact.as_ref().unwrap();
+    assert!(!contact.forces(&played.dynamics.pose).is_empty());
+    let centre = contact.obstacles()[0];
+    let nearest = (contact.mapped().positions(&played.dynamics.pose).iter())
+        .map(|x| (x - centre).norm())
+        .fold(f64::INFINITY, f64::min);
+    // The ball and half of the plate.
+    assert!(nearest > 0.032, "{nearest}");
+}
