@@ -61,7 +61,7 @@ pub enum FineSurface {
     /// Another mesh, bound to it where it is closest.
     Bound {
         /// The mesh.
-        surface: Surface,
+        surface: Box<Surface>,
         /// How far a vertex may be from the elements [m].
         reach: f64,
     },

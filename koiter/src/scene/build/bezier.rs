@@ -59,7 +59,7 @@ impl Builder<'_> {
         };
         let path = format!("bezier_shell.{}.surface.mesh", spec.name);
         Ok(FineSurface::Bound {
-            surface: self.mesh(&path, mesh)?,
+            surface: Box::new(self.mesh(&path, mesh)?),
             reach: (spec.surface.reach).unwrap_or_else(|| shell.surface.mean_edge_length()),
         })
     }

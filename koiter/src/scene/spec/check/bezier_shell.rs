@@ -131,7 +131,7 @@ fn check_company(spec: &SceneSpec) -> Checked {
             return Err(error(Kind::Conflict, &path, message));
         }
     }
-    for load in spec.load.iter().filter(|load| load.origin.is_some()) {
+    if let Some(load) = spec.load.iter().find(|load| load.origin.is_some()) {
         let path = format!("load.{}.origin", load.name);
         let message = "pressure on Bézier shells has no origin: its forces are those of every step";
         return Err(error(Kind::Conflict, &path, message.to_owned()));
