@@ -23,6 +23,12 @@ name = "paper"
 mesh.grid = { size = [1.0, 1.0], cells = [2, 2] }
 thickness = 1e-3
 area_density = 0.1
+[[bezier_shell]]
+name = "vessel"
+mesh.grid = { size = [1.0, 1.0], cells = [2, 2] }
+[[procedure]]
+name = "incision"
+at = 0.5
 [[heat_source]]
 name = "ball"
 temperature = 1000.0
