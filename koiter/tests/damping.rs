@@ -350,6 +350,64 @@ fn texts_are_damped_as_the_built_in_energies_are() {
     );
 }
 
+/// The same energy of hinges as a density and by hinge is damped alike.
+#[test]
+fn the_damping_of_a_text_does_not_depend_on_its_spelling() {
+    let lost = |is_density: bool, text: &str| {
+        let damping = DampingOptions {
+            stiffness: 5e-3,
+            ..Default::default()
+        };
+        let mut model = flying(IntegratorKind::Newmark, BendingModel::None, damping);
+        model.energies = vec![TextEnergy {
+            name: "hinges".into(),
+            shell: 0,
+            on: ElementKind::Hinge,
+            value: TextValue {
+                is_dissipation: false,
+                is_density,
+            },
+            text: text.into(),
+            parameters: Vec::new(),
+            vertices: None,
+        }];
+        let mut simulation = Simulation::new(model).unwrap();
+        let start = simulation.total_energy();
+        (0..50).for_each(|_| drop(simulation.step(2e-4).unwrap()));
+        start - simulation.total_energy()
+    };
+    let density = lost(true, "4e-3 * (angle - rest_angle)^2 / rest_height");
+    let energy = lost(
+        false,
+        "4e-3 * rest_length / rest_height * (angle - rest_angle)^2",
+    );
+    assert!(
+        density > 0.0 && (energy / density - 1.0).abs() < 1e-6,
+        "{density} {energy}"
+    );
+}
+
+/// Points of patches have no mass, and no velocity that a step could go by.
+#[test]
+fn damping_of_second_order_shells_takes_energy() {
+    let only = DampingOptions {
+        stiffness: 1e-3,
+        ..Default::default()
+    };
+    let mut simulation =
+        Simulation::new(flying(IntegratorKind::Newmark, BendingModel::Ds2nd, only)).unwrap();
+    simulation.step(1e-3).unwrap();
+    let mut last = simulation.total_energy();
+    for _ in 0..4 {
+        let report = simulation.step(1e-3).unwrap();
+        let damped = report.energies.iter().find(|(name, _)| *name == "damping");
+        assert!(damped.unwrap().1 > 0.0, "{damped:?}");
+        let now = simulation.total_energy();
+        assert!(now < last, "{now} {last}");
+        last = now;
+    }
+}
+
 #[test]
 fn damping_shortens_the_stable_explicit_step() {
     let stable = |stiffness: f64| {

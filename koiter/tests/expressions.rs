@@ -392,6 +392,39 @@ fn explicit_steps_are_refused_when_speed_or_parameters_make_them_unstable() {
     assert!((20..40).contains(&stopped), "{stopped}");
 }
 
+/// Where damping limits steps, a longer one is looked at anew; and wind that drives is no gain out of nothing.
+#[test]
+fn phases_of_other_steps_are_judged_anew_and_wind_may_drive() {
+    let drag = energy(
+        "drag",
+        ElementKind::Vertex,
+        DISSIPATION_DENSITY,
+        "2000 * (vx^2 + vy^2 + vz^2)",
+    );
+    let mut steps = model(sheet(), vec![drag], IntegratorKind::Newmark);
+    steps.solver.newmark.beta = 0.0;
+    let mut simulation = Simulation::new(steps).unwrap();
+    // 2 c/σ = 8000/s: up to 0.25 ms by damping alone.
+    (0..5).for_each(|_| drop(simulation.step(1e-6).unwrap()));
+    let refused = simulation.step(3e-4);
+    assert!(
+        matches!(refused, Err(StepError::Unstable { .. })),
+        "{refused:?}"
+    );
+    let wind = energy(
+        "wind",
+        ElementKind::Face,
+        DISSIPATION_DENSITY,
+        "0.2 * abs(nz * (5 - vz))^3",
+    );
+    let mut watched = model(sheet(), vec![wind], IntegratorKind::Newmark);
+    watched.solver.newmark.energy_growth = Some(1e-2);
+    let mut simulation = Simulation::new(watched).unwrap();
+    for _ in 0..10 {
+        assert_eq!(simulation.step(1e-3).unwrap().parts, 1);
+    }
+}
+
 #[test]
 fn powers_know_negative_bases_and_rest() {
     // A name is as good as a number.

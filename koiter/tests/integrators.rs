@@ -308,6 +308,38 @@ fn explicit_steps_beyond_the_stable_one_are_refused_and_below_it_stay_bounded() 
     }
 }
 
+/// With γ above 1/2 steps must be shorter: dt² ω² < 2/γ.
+#[test]
+fn the_stable_explicit_step_falls_with_gamma() {
+    let stable = |gamma: f64| {
+        let mut model = explicit(flying(IntegratorKind::Newmark));
+        model.solver.newmark.gamma = gamma;
+        let mut simulation = Simulation::new(model).unwrap();
+        let Err(StepError::Unstable { stable_dt, .. }) = simulation.step(0.01) else {
+            panic!("a step of 0.01 s was taken");
+        };
+        for _ in 0..300 {
+            simulation.step(0.97 * stable_dt).unwrap();
+        }
+        stable_dt
+    };
+    let ratio = stable(1.0) / stable(0.5);
+    assert!((ratio - 0.5f64.sqrt()).abs() < 1e-9, "{ratio}");
+}
+
+/// A shell at rest gains nothing but round-off, and the watch does not mind.
+#[test]
+fn the_watch_on_energy_does_not_mind_round_off() {
+    let mut model = flying(IntegratorKind::Newmark);
+    model.shells[0].velocities.fill(Vec3::zeros());
+    model.shells[0].surface.positions = model.shells[0].rest_positions.clone();
+    model.solver.newmark.energy_growth = Some(1e-3);
+    let mut simulation = Simulation::new(model).unwrap();
+    for _ in 0..3 {
+        assert_eq!(simulation.step(1e-3).unwrap().parts, 1);
+    }
+}
+
 #[test]
 fn explicit_steps_know_no_contact() {
     let mut model = explicit(flying(IntegratorKind::Newmark));

@@ -103,6 +103,7 @@ impl Base {
         (system.damping).begin(&RateRule {
             reach,
             base: combination,
+            dt,
         });
         let moving = base.iter().zip(&base_velocities);
         let mut inertia = Inertia {

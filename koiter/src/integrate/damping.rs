@@ -26,6 +26,9 @@ pub struct Damper {
     pub time: f64,
     /// The elastic energy whose rest values move this one's, by its place in [`super::System::elastic`].
     pub follows: Option<usize>,
+    /// Whether s depends on unknowns without mass. Their velocities are no part of the state, so a method cannot take their
+    /// rates from it: they are the mean rates of the step, of first order.
+    pub is_massless: bool,
     /// s̄˙; empty: zero.
     rest_rate: Vec<f64>,
 }
@@ -44,6 +47,7 @@ impl Damper {
             energy,
             time,
             follows,
+            is_massless: false,
             rest_rate: Vec::new(),
         }
     }
@@ -66,8 +70,10 @@ pub struct Damping {
 pub(super) struct RateRule {
     /// τ [s].
     pub(super) reach: f64,
-    /// ŝ is the sum of s at these configurations with these weights, which sum to 1.
+    /// ŝ is the sum of s at these configurations with these weights, which sum to 1; the first is that at the start of the step.
     pub(super) base: Vec<(f64, Vec<f64>)>,
+    /// The step [s].
+    pub(super) dt: f64,
 }
 
 impl RateRule {
@@ -76,6 +82,7 @@ impl RateRule {
         Self {
             reach: dt,
             base: vec![(1.0, q.to_vec())],
+            dt,
         }
     }
 
@@ -86,6 +93,7 @@ impl RateRule {
         Self {
             reach: 0.5 * dt,
             base: vec![(1.0, q.to_vec()), (0.5, ahead), (-0.5, behind)],
+            dt,
         }
     }
 
@@ -95,6 +103,7 @@ impl RateRule {
         Self {
             reach: 0.5 * dt,
             base: vec![(1.0, q.to_vec()), (-0.5, ahead), (0.5, behind)],
+            dt,
         }
     }
 
@@ -133,12 +142,15 @@ impl Damping {
             let rate = &damper.rest_rate;
             let measures =
                 (damper.energy.rest_measures_mut()).expect("a damped energy has measures");
-            let mut rest = rule.combined(|q| measures.measure(q));
+            let (mut rest, reach) = match damper.is_massless {
+                true => (measures.measure(&rule.base[0].1), rule.dt),
+                false => (rule.combined(|q| measures.measure(q)), rule.reach),
+            };
             for (rest, rate) in rest.iter_mut().zip(rate) {
-                *rest += rule.reach * rate;
+                *rest += reach * rate;
             }
             measures.set_rest(&rest);
-            measures.set_factor(damper.time / rule.reach);
+            measures.set_factor(damper.time / reach);
         }
         let start = &rule.base[0].1;
         if !self.rates.is_empty() {
@@ -235,23 +247,34 @@ impl Damping {
         before: &[f64],
         q: &[f64],
     ) -> Vec<(String, f64)> {
-        let work = |add: &dyn Fn(&mut [f64])| -> f64 {
-            let mut gradient = vec![0.0; q.len()];
-            add(&mut gradient);
-            let solved = 0..layout.num_solved_dofs();
-            solved.map(|i| gradient[i] * (q[i] - before[i])).sum()
-        };
         let mut taken = Vec::new();
         if !self.is_conservative() {
-            taken.push((
-                "damping".into(),
-                work(&|gradient| self.add_damping(q, gradient)),
-            ));
+            let damping = |gradient: &mut [f64]| self.add_damping(q, gradient);
+            taken.push(("damping".into(), work(layout, [before, q], &damping)));
         }
-        for rate in &self.rates {
-            let work = work(&|gradient| rate.add_gradient(q, gradient));
-            taken.push((rate.name().to_owned(), work));
-        }
+        let by_rates = self.taken_by_rates(layout, before, q);
+        taken.extend(by_rates.map(|(name, work)| (name.to_owned(), work)));
         taken
     }
+
+    /// What each dissipation function took.
+    pub(super) fn taken_by_rates(
+        &self,
+        layout: &DofLayout,
+        before: &[f64],
+        q: &[f64],
+    ) -> impl Iterator<Item = (&str, f64)> {
+        self.rates.iter().map(move |rate| {
+            let force = |gradient: &mut [f64]| rate.add_gradient(q, gradient);
+            (rate.name(), work(layout, [before, q], &force))
+        })
+    }
+}
+
+/// The work of a gradient at the end of a way over the solved unknowns [J].
+fn work(layout: &DofLayout, [before, q]: [&[f64]; 2], add: &dyn Fn(&mut [f64])) -> f64 {
+    let mut gradient = vec![0.0; q.len()];
+    add(&mut gradient);
+    let solved = 0..layout.num_solved_dofs();
+    solved.map(|i| gradient[i] * (q[i] - before[i])).sum()
 }

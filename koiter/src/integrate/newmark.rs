@@ -12,7 +12,7 @@
 //! contacts gain energy in steps that are long for them: cloth of 2450 triangles that falls on a ball in steps of 20 ms has
 //! six times its energy after 0.6 s. Shorter steps help, or γ > 1/2, which damps in first order, or damping; gains can be
 //! watched, and the steps that have them be cut ([`Newmark::energy_growth`]). β = 1/4 is stable for any step in linear problems;
-//! β = 0 only below 2/ω of the fastest vibration, see [`super::stable_step`].
+//! β = 0 only below √(2/γ)/ω of the fastest vibration, see [`super::stable_step`].
 //!
 //! Damping takes rates of strain ṡ_{n+1} = 2 (s_{n+1} − s_n)/dt − ṡ_n in implicit steps, whatever β: of second order, as the
 //! method, and a function of s alone, so that both momenta stay what they are. Explicit steps take the mean rate of the step,
@@ -97,6 +97,7 @@ impl Newmark {
         let monitor = EnergyMonitor {
             largest_share,
             largest_kinetic: kinetic_so_far(&state.memory),
+            velocity_tolerance: self.velocity_tolerance,
         };
         let kinetic = monitor.check(system, [state, next], prescribed)?;
         if let Memory::Accelerated {
@@ -162,7 +163,7 @@ impl Newmark {
                 stable: Some(stable),
                 ..
             } if system.is_still_stable(stable, state, dt) => stable.clone(),
-            _ => system.stable_step(state, &prescribed.is_fixed, dt),
+            _ => system.stable_step(state, &prescribed.is_fixed, [dt, self.gamma]),
         };
         if dt > stable.dt {
             return Err(StepError::Unstable {

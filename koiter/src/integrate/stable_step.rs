@@ -1,11 +1,12 @@
 //! How long an explicit step may be.
 //!
 //! ```text
-//! dt² ω² + 2 dt c < 4,    ω² = xᵀ K x,  c = xᵀ C x   for the x with xᵀ M x = 1 that makes xᵀ (K + 2 C/dt) x largest
+//! dt² ω² + 2 dt c < 2/γ,    ω² = xᵀ K x,  c = xᵀ C x   for the x with xᵀ M x = 1 that makes xᵀ (K + 2 C/dt) x largest
 //! ```
 //!
 //! K the exact Hessian of all energies without contact, C that of damping by rates, which an explicit step knows half a step
-//! late, M the masses. Without damping it is dt < 2 / ω. x is found by power iteration, from below; on meshes of shells the
+//! late, M the masses, γ that of Newmark's method: of x'' = −ω² x − c x' a step and the next multiply by −1 at the limit. With γ = 1/2 and
+//! without damping it is dt < 2 / ω. x is found by power iteration, from below; on meshes of shells the
 //! iteration below is within a percent or two of ω².
 //!
 //! An estimate costs as much as some twenty steps, so it is kept: for a hundred steps, unless what energies are told from outside
@@ -38,8 +39,11 @@ impl System {
             (now - then).abs() <= SETTING_CHANGE * now.abs().max(then.abs())
         });
         let margin = (stable.dt / dt).sqrt();
+        // The x of the estimate depends on the step where there is damping.
+        let is_step =
+            self.damping.is_none() || (dt / stable.found_for - 1.0).abs() < SETTING_CHANGE;
         let is_slow = self.damping.rates.is_empty() || speed(state) <= margin * stable.speed;
-        stable.age < KEPT_STEPS && is_alike && is_slow
+        stable.age < KEPT_STEPS && is_alike && is_step && is_slow
     }
 
     /// What energies are told from outside, of all in order.
@@ -50,9 +54,15 @@ impl System {
     }
 
     /// The longest stable step from `state` as it is estimated, if it is near `dt` [s].
-    pub(super) fn stable_step(&mut self, state: &State, is_fixed: &[bool], dt: f64) -> StableStep {
+    pub(super) fn stable_step(
+        &mut self,
+        state: &State,
+        is_fixed: &[bool],
+        [dt, gamma]: [f64; 2],
+    ) -> StableStep {
         StableStep {
-            dt: SAFETY * self.longest_step(state, is_fixed, dt),
+            dt: SAFETY * self.longest_step(state, is_fixed, [dt, gamma]),
+            found_for: dt,
             age: 0,
             speed: speed(state),
             settings: self.settings(),
@@ -60,7 +70,7 @@ impl System {
     }
 
     /// An estimate of the longest stable step [s], at least the true one and rarely more than 2 % longer, if it is near `dt`.
-    fn longest_step(&mut self, state: &State, is_fixed: &[bool], dt: f64) -> f64 {
+    fn longest_step(&mut self, state: &State, is_fixed: &[bool], [dt, gamma]: [f64; 2]) -> f64 {
         let q = &state.q[..];
         // With half a step for τ the Hessian of damping is 2 C/dt, at the velocities of the state.
         let moving = state.q.iter().zip(&state.velocities);
@@ -95,14 +105,15 @@ impl System {
             return f64::INFINITY;
         };
         if self.damping.is_none() {
-            return 2.0 / eigenvalue.sqrt();
+            return (2.0 / gamma / eigenvalue).sqrt();
         }
         let (undamped, _) = self.second_derivatives(q, Part::All);
         // The quotients lie below the eigenvalue as far as the iteration has not ended: both by the same share.
         let all = dot(&shape, &multiply(&matrix, &[&of_shape, &of_rates], &shape));
         let stiffness = eigenvalue / all * dot(&shape, &multiply(&undamped, &[&of_shape], &shape));
         let damping = 0.5 * dt * (eigenvalue - stiffness).max(0.0);
-        4.0 / (damping + (damping * damping + 4.0 * stiffness.max(0.0)).sqrt())
+        let limit = 2.0 / gamma;
+        limit / (damping + (damping * damping + limit * stiffness.max(0.0)).sqrt())
     }
 }
 
@@ -111,8 +122,8 @@ fn speed(state: &State) -> f64 {
     (state.velocities.iter()).fold(0.0, |most: f64, v| most.max(v.abs()))
 }
 
-/// The largest eigenvalue of `S A S`, A a multiplication, S the diagonal matrix of `scale`, and S times its vector of unit length; `None` if
-/// nothing moves.
+/// The largest eigenvalue of `S A S`, A a multiplication, S the diagonal matrix of `scale`, and S times its vector of unit
+/// length; `None` if nothing moves.
 fn largest(multiply: &dyn Fn(&[f64]) -> Vec<f64>, scale: &[f64]) -> Option<(Vec<f64>, f64)> {
     // No two entries alike, so that no symmetry hides the fastest vibration.
     let mut x: Vec<f64> = (0..scale.len())

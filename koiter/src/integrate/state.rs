@@ -50,6 +50,8 @@ pub enum Memory {
 pub struct StableStep {
     /// The step [s].
     pub dt: f64,
+    /// The step for which it was looked for [s].
+    pub found_for: f64,
     /// Steps since it was found.
     pub age: u64,
     /// The largest speed at the time [m/s], on which dissipations depend.

@@ -49,7 +49,12 @@ pub(super) fn dampers(shell: &Shell, part: &ShellPart, layout: &DofLayout) -> Ve
         let membranes = membrane(shell, part, layout).into_iter();
         dampers.extend(membranes.map(|energy| Damper::new(energy, time, None)));
         let bending = bending(shell, part, layout);
-        dampers.extend((bending.into_iter()).map(|energy| Damper::new(energy, time, part.bending)));
+        for energy in bending {
+            let mut damper = Damper::new(energy, time, part.bending);
+            // The points of patches.
+            damper.is_massless = shell.bending == BendingModel::Ds2nd;
+            dampers.push(damper);
+        }
     }
     if damping.hinges > 0.0 {
         let hinges = hinges(shell, part, damping.hinges);

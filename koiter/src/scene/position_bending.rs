@@ -5,9 +5,9 @@ use super::elastic::rest_surface;
 use super::model::Shell;
 use crate::assembly::{Assembled, Differentiated, DofLayout, Energy};
 use crate::energy::bending::{
-    AngleProfile, BendingStrains, CorotationalEdge, CorotationalFace, DiscreteShells, FaceBending,
-    HingeSprings, LaplacianMesh, MidEdgeAverage, QuadraticHinge, QuadraticVertex, SecondOrderEdges,
-    SecondOrderFaces, StrainSquares, VertexStrains,
+    AngleProfile, CorotationalEdge, CorotationalFace, DiscreteShells, FaceBending, HingeSprings,
+    HingeStrains, LaplacianMesh, MidEdgeAverage, QuadraticHinge, QuadraticVertex, SecondOrderEdges,
+    SecondOrderFaces, VertexStrains,
 };
 use crate::integrate::ShellPart;
 use crate::mesh::Surface;
@@ -89,10 +89,13 @@ impl<'a> PositionBending<'a> {
         ]
     }
 
-    /// The strains of [`Self::second_order`].
+    /// The strains of [`Self::second_order`], without what keeps patches from degenerating.
     pub(super) fn second_order_strains(&self) -> Vec<Box<dyn Energy>> {
         let (faces, edges) = self.patches();
-        vec![self.strains(faces), self.strains(edges)]
+        vec![
+            Box::new(Assembled::new(faces, self.layout)),
+            Box::new(Assembled::new(edges.with_area_stiffness(0.0), self.layout)),
+        ]
     }
 
     fn hinge_model(&self) -> QuadraticHinge {
@@ -106,7 +109,8 @@ impl<'a> PositionBending<'a> {
 
     /// The strains of [`Self::quadratic_hinge`].
     pub(super) fn quadratic_hinge_strains(&self) -> Box<dyn Energy> {
-        self.strains(self.hinge_model())
+        let strains = Differentiated(HingeStrains::new(self.hinge_model()));
+        Box::new(Assembled::new(strains, self.layout))
     }
 
     fn vertex_model(&self, laplacian: LaplacianMesh) -> QuadraticVertex {
@@ -125,14 +129,6 @@ impl<'a> PositionBending<'a> {
             self.vertex_model(laplacian),
             &self.part.mesh,
         ))
-    }
-
-    fn strains<const N: usize, const K: usize, L>(&self, model: L) -> Box<dyn Energy>
-    where
-        L: BendingStrains<N, K> + 'static,
-    {
-        let squares = Differentiated(StrainSquares::new(model));
-        Box::new(Assembled::new(squares, self.layout))
     }
 
     pub(super) fn mid_edge_average(&self) -> Box<dyn Energy> {

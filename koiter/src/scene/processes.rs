@@ -1,5 +1,6 @@
 //! Processes of a model: what moves the rest curvatures of its shells over time.
 
+use std::f64::consts::PI;
 use std::fmt;
 
 use nalgebra::Vector3;
@@ -12,7 +13,7 @@ use crate::Vec3;
 use crate::assembly::RestMeasures;
 use crate::energy::bending::{AngleProfile, Identity, Sine, Tangent, rest_forms_of_hinges};
 use crate::integrate::{ShellPart, System};
-use crate::mesh::EdgeId;
+use crate::mesh::{EdgeId, Surface};
 use crate::process::{
     Bent, Crease, Curl, Fold, Measure, Process, RestState, Window, Yielding, on_cylinder,
 };
@@ -78,7 +79,7 @@ impl fmt::Display for ProcessKind {
 }
 
 /// Why a process cannot act on its shell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProcessError {
     /// A bending model without rest values.
@@ -98,6 +99,18 @@ pub enum ProcessError {
          me-average curl any shape"
     )]
     NotFlat(&'static str),
+    /// A cylinder that an edge would go around.
+    #[error(
+        "a radius of {radius:.3e} m is too small for this mesh: an edge of {widest:.3e} m around the axis would turn by half a circle \
+         or more; take a radius above {:.3e} m, or smaller triangles",
+        .widest / PI
+    )]
+    TooTight {
+        /// Of the cylinder [m].
+        radius: f64,
+        /// The longest way of an edge around the axis [m].
+        widest: f64,
+    },
 }
 
 /// The processes of a simulation, and what they have done so far.
@@ -310,6 +323,7 @@ fn make(
                 return Ok(Box::new(curl));
             }
             let laid = on_cylinder(&rest, *radius, axis).ok_or(ProcessError::NotFlat(name))?;
+            check_curl(&rest, *radius, axis)?;
             let mut curled = q.to_vec();
             write_points(&mut curled, part.first_vertex, &laid);
             let change = measures.measure(&curled);
@@ -340,6 +354,22 @@ impl BendingModel {
     pub(super) fn has_creases(self) -> bool {
         use BendingModel::{Bac, Dcs, DsTan, DsTheta, Dso};
         matches!(self, DsTheta | DsTan | Bac | Dcs | Dso)
+    }
+}
+
+/// Refuses a cylinder around which an edge would go by half a turn: its hinges have no angles for that.
+fn check_curl(rest: &Surface, radius: f64, axis: &Vec3) -> Result<(), ProcessError> {
+    let axis = axis.normalize();
+    let ends = rest.mesh.edges().iter();
+    let widest = ends
+        .map(|&[u, v]| {
+            let edge = rest.positions[v as usize] - rest.positions[u as usize];
+            (edge - axis * edge.dot(&axis)).norm()
+        })
+        .fold(0.0, f64::max);
+    match widest < PI * radius {
+        true => Ok(()),
+        false => Err(ProcessError::TooTight { radius, widest }),
     }
 }
 

@@ -4,54 +4,76 @@ use koiter::assembly::{
     Assembled, Differentiated, Dof, DofLayout, Energy, LocalEnergy, RestMeasures,
 };
 use koiter::energy::bending::{
-    BendingStrains, LaplacianMesh, SecondOrderEdges, SecondOrderFaces, StrainSquares, VertexStrains,
+    HingeStrains, LaplacianMesh, SecondOrderEdges, SecondOrderFaces, VertexStrains,
 };
 use koiter::energy::expression::{Elements, PotentialDamping, WholeDamping};
-use koiter::testing::{Claims, check_claims, check_global};
+use koiter::testing::{Claims, check, check_claims, check_global};
 
-use super::expressions::{edges, faces, hinges, potential, whole};
+use super::expressions::{edges, faces, hinges, potential, vertices, whole};
 use super::setup::*;
 use super::{check_rest_measures, second_order};
 
 /// Strains are 0 in a flat shape, do not change with rigid motions, and pull at nothing where they are what is measured.
-fn check_strains<const N: usize, const K: usize, L: BendingStrains<N, K>>(
-    layout: &DofLayout,
-    [q, at_rest]: [&[f64]; 2],
-    model: L,
-) {
-    let mut energy = Assembled::new(Differentiated(StrainSquares::new(model)), layout);
-    let claims = Claims {
-        rigid_motion_invariant: true,
-        rest: Some(at_rest.to_vec()),
-        ..Claims::default()
-    };
-    check_claims(&energy, layout, q, &claims).unwrap();
-    check_global(&mut energy, layout, q).unwrap();
-    let flat = energy.rest_measures().unwrap().measure(at_rest);
+#[test]
+fn strains_of_hinges_conform() {
+    let s = patch(0.0);
+    let mut energy = Assembled::new(
+        Differentiated(HingeStrains::new(quadratic_hinge(&s))),
+        &s.layout,
+    );
+    check_claims(&energy, &s.layout, &s.q, &claims_of(&s)).unwrap();
+    check_global(&mut energy, &s.layout, &s.q).unwrap();
+    let flat = RestMeasures::measure(&energy, &s.at_rest);
     assert!(flat.iter().all(|strain| strain.abs() < 1e-14), "{flat:?}");
+    let squares = Differentiated(HingeStrains::new(quadratic_hinge(&s)));
+    check_rest_measures(&s, &s.layout, &s.q, squares);
 }
 
+/// Where strains are those of rest nothing pulls.
+fn check_rest_of<const N: usize, const K: usize>(
+    layout: &DofLayout,
+    q: &[f64],
+    local: impl LocalEnergy<N, K>,
+) {
+    let mut energy = Assembled::new(local, layout);
+    assert!(energy.value(q) > 1e-3);
+    let now = RestMeasures::measure(&energy, q);
+    energy.set_rest(&now);
+    let mut gradient = vec![0.0; q.len()];
+    energy.add_gradient(q, &mut gradient);
+    let largest = gradient.iter().fold(0.0f64, |m, g| m.max(g.abs()));
+    assert!(largest < 1e-14 && energy.value(q) < 1e-28, "{largest}");
+}
+
+/// With rest values derivatives are those of the formula with rest values.
 #[test]
-fn strains_of_quadratic_bending_and_second_order_shells_conform() {
+fn second_order_shells_take_rest_values() {
     let s = patch(0.0);
-    check_strains(&s.layout, [&s.q, &s.at_rest], quadratic_hinge(&s));
-    let squares = Differentiated(StrainSquares::new(quadratic_hinge(&s)));
-    check_rest_measures(&s, &s.layout, &s.q, squares);
-    let (layout, points, q, at_rest) = second_order(&s);
+    let (layout, points, q, _) = second_order(&s);
     let rigidities = vec![0.7; s.frames.len()];
     let (frames, r) = (s.frames.clone(), rigidities.clone());
-    let faces = SecondOrderFaces::new(&s.rest.mesh, Dof(0), points, frames, r);
-    check_strains(&layout, [&q, &at_rest], faces);
-    let edges = SecondOrderEdges::new(&s.rest, Dof(0), points, &s.frames, &rigidities);
-    check_strains(&layout, [&q, &at_rest], edges);
+    let claims = Claims {
+        rigid_motion_invariant: true,
+        ..Claims::default()
+    };
+    let faces = || SecondOrderFaces::new(&s.rest.mesh, Dof(0), points, frames.clone(), r.clone());
+    check_rest_of(&layout, &q, faces());
+    let mut faces = faces();
+    (0..faces.num_stencils()).for_each(|face| faces.set_rest(face, &[0.3, -0.2, 0.05]));
+    check(faces, &layout, &q, |e, f, q| e.formula(f, q), &claims).unwrap();
+    let edges = || SecondOrderEdges::new(&s.rest, Dof(0), points, &s.frames, &rigidities);
+    // What keeps patches from degenerating is no damping.
+    check_rest_of(&layout, &q, edges().with_area_stiffness(0.0));
+    let mut edges = edges();
+    (0..edges.num_stencils()).for_each(|edge| edges.set_rest(edge, &[0.2, -0.1]));
+    check(edges, &layout, &q, |e, i, q| e.formula(i, q), &claims).unwrap();
 }
 
-/// A fold keeps lengths: then the strain is all of the vector that QB(CR) squares.
 #[test]
 fn the_strain_of_a_fold_is_all_of_quadratic_bending() {
     let s = patch(0.0);
     let model = quadratic_hinge(&s);
-    let squares = Differentiated(StrainSquares::new(quadratic_hinge(&s)));
+    let squares = Differentiated(HingeStrains::new(quadratic_hinge(&s)));
     let gathered = Assembled::new(quadratic_hinge(&s), &s.layout);
     for hinge in 0..model.num_stencils() {
         let mut q = gathered.gather(hinge, &s.at_rest);
@@ -136,6 +158,12 @@ fn what_is_linear_or_concave_is_not_damped() {
     let s = patch(1.0);
     let linear = potential(edges(&s), "k * length");
     let mut damping = Assembled::new(Differentiated(PotentialDamping::new(linear.0)), &s.layout);
+    let rest = RestMeasures::measure(&damping, &s.at_rest);
+    damping.set_rest(&rest);
+    assert_eq!(damping.value(&s.q), 0.0);
+    // What is linear in the shape may well be more than linear together with what no motion changes.
+    let weight = potential(vertices(&s), "mass * 9.81 * z");
+    let mut damping = Assembled::new(Differentiated(PotentialDamping::new(weight.0)), &s.layout);
     let rest = RestMeasures::measure(&damping, &s.at_rest);
     damping.set_rest(&rest);
     assert_eq!(damping.value(&s.q), 0.0);

@@ -89,7 +89,7 @@ pub(super) fn faces(s: &Setup) -> Faces {
     Faces(faces.map(element).collect())
 }
 
-fn vertices(s: &Setup) -> Vertices {
+pub(super) fn vertices(s: &Setup) -> Vertices {
     let positions = s.rest.positions.iter().enumerate();
     let element = |(vertex, rest): (usize, &Vec3)| VertexElement {
         dof: Dof(3 * vertex as u32),

@@ -1,7 +1,6 @@
 //! Bending models.
 
 mod bending_stencil;
-mod bending_strains;
 mod corotational_edge;
 mod corotational_face;
 mod director_clamp;
@@ -13,6 +12,7 @@ mod held_mid_edge;
 mod hinge;
 mod hinge_forms;
 mod hinge_function;
+mod hinge_strains;
 mod hinge_weight;
 mod kirchhoff;
 mod kirchhoff_form;
@@ -29,7 +29,6 @@ mod symmetry_edge;
 mod vertex_strains;
 
 pub use bending_stencil::{BendingStencil, DirectorShape, bending_stencils, curvatures, directors};
-pub use bending_strains::{BendingStrains, StrainSquares};
 pub use corotational_edge::CorotationalEdge;
 pub use corotational_face::CorotationalFace;
 pub use director_clamp::{ClampedEdge, DirectorClamp};
@@ -38,6 +37,7 @@ pub use extra_unknowns::ExtraUnknowns;
 pub use face_bending::{FaceBending, FaceLaw};
 pub(super) use hinge::turning_angle;
 pub use hinge_forms::rest_forms_of_hinges;
+pub use hinge_strains::HingeStrains;
 pub use hinge_weight::{HingeSprings, HingeWeight};
 pub use kirchhoff::{DiscreteKirchhoff, vertex_normals};
 pub use kirchhoff_form::kirchhoff_forms;

@@ -16,12 +16,10 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::BendingStrains;
 use super::hinge::{Hinge, hinges};
 use crate::Vec3;
 use crate::assembly::{Dof, LocalEnergy, LocalHessian};
 use crate::geometry::Real;
-use crate::geometry::over_numbers::{cross, dot, norm, point, sub};
 use crate::mesh::Surface;
 use crate::rest::RestFrame;
 
@@ -64,6 +62,11 @@ impl QuadraticHinge {
         (1..4).fold(Vec3::zeros(), |sum, i| {
             sum + (x(i) - x(0)) * self.weights[stencil][i]
         })
+    }
+
+    /// Factors of the four vertices in `√(C · 3 / (2 (A + A'))) v`.
+    pub(super) fn factors(&self, stencil: usize) -> &[f64; 4] {
+        &self.weights[stencil]
     }
 
     /// E of one hinge over any numbers: the oracle of the tests.
@@ -129,26 +132,5 @@ impl LocalEnergy<12, 4> for QuadraticHinge {
 
     fn describe(&self, stencil: usize) -> String {
         self.hinges[stencil].describe()
-    }
-}
-
-/// v along the mean normal of both faces, signed as the hinge angle: of isometric shapes all of it.
-impl BendingStrains<12, 4> for QuadraticHinge {
-    const STRAINS: usize = 1;
-
-    fn strains<R: Real>(&self, stencil: usize, q: &[R; 12], strains: &mut [R]) {
-        let [along, own, other] = [1, 2, 3].map(|i| sub(&point(q, i), &point(q, 0)));
-        let normals = [cross(&along, &own), cross(&other, &along)].map(|normal| {
-            let length = norm(&normal);
-            normal.map(|entry| entry / length)
-        });
-        let mean: [R; 3] = std::array::from_fn(|axis| normals[0][axis] + normals[1][axis]);
-        let [_, b, c, d] = self.weights[stencil];
-        let bend = std::array::from_fn(|axis| along[axis] * b + own[axis] * c + other[axis] * d);
-        strains[0] = dot(&bend, &mean) / norm(&mean);
-    }
-
-    fn strain_stiffness(&self, _stencil: usize) -> f64 {
-        2.0
     }
 }

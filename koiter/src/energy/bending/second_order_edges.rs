@@ -1,7 +1,7 @@
 //! Second-order discrete shells, DS(2nd): bending between the quadratic patches, and what keeps them from degenerating.
 //!
 //! ```text
-//! E = Σ_edges Σ_n ω_n [ C · 3 ℓ² / (2 (A + A')) θ(s_n)² + η C/2 Σ_sides ln² J(s_n) ],    J = |T × a| / 2A
+//! E = Σ_edges Σ_n ω_n [ C · 3 ℓ² / (2 (A + A')) (θ(s_n) − θ̄_n)² + η C/2 Σ_sides ln² J(s_n) ],    J = |T × a| / 2A
 //! ```
 //!
 //! θ angle [rad] between the normals of the two patches at a point of their common edge, T the edge's tangent there, a the
@@ -20,7 +20,6 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::BendingStrains;
 use super::hinge::turning_angle;
 use super::quadratic_form::{Functional, QuadraticForm, WingFunctionals, scaled_sum};
 use crate::Vec3;
@@ -57,6 +56,8 @@ pub struct SecondOrderEdges {
     edges: Vec<EdgePatches>,
     /// η.
     area_stiffness: f64,
+    /// θ̄ at the Gauss points of every edge: 0 but for damping.
+    rest: Vec<[f64; 2]>,
 }
 
 /// The Gauss points of an edge, each with half of its length.
@@ -176,8 +177,10 @@ impl SecondOrderEdges {
                 vertices: [u, v],
             }
         });
+        let edges: Vec<EdgePatches> = edges.collect();
         Self {
-            edges: edges.collect(),
+            rest: vec![[0.0; 2]; edges.len()],
+            edges,
             area_stiffness: AREA_STIFFNESS,
         }
     }
@@ -212,9 +215,9 @@ impl SecondOrderEdges {
         (wing.length * wing.height / self.edges[stencil].twice_areas[side]).ln()
     }
 
-    fn value_at(&self, stencil: usize, point: &GaussPoint) -> f64 {
+    fn value_at(&self, stencil: usize, point: &GaussPoint, rest: f64) -> f64 {
         let edge = &self.edges[stencil];
-        let mut value = 0.5 * edge.stiffness * point.angle().powi(2);
+        let mut value = 0.5 * edge.stiffness * (point.angle() - rest).powi(2);
         for (side, wing) in point.wings.iter().enumerate() {
             if let Some(wing) = wing {
                 let stretch = self.stretch(stencil, side, wing);
@@ -228,9 +231,9 @@ impl SecondOrderEdges {
         let edge = &self.edges[stencil];
         let mut form = QuadraticForm::<27>::zero(kept);
         let mut local = LocalHessian::zero();
-        for point in self.gauss_points(stencil, q) {
-            local.value += self.value_at(stencil, &point);
-            let moment = edge.stiffness * point.angle();
+        for (point, rest) in self.gauss_points(stencil, q).iter().zip(self.rest[stencil]) {
+            local.value += self.value_at(stencil, point, rest);
+            let moment = edge.stiffness * (point.angle() - rest);
             let mut turning = [0.0; 27];
             for (side, wing) in point.wings.iter().enumerate() {
                 let Some(wing) = wing else { continue };
@@ -258,10 +261,14 @@ impl SecondOrderEdges {
     pub fn formula<R: Real>(&self, stencil: usize, q: &[R; 27]) -> R {
         let edge = &self.edges[stencil];
         let mut energy = R::from(0.0);
-        for s in gauss_points() {
-            let [tangent, a, b] = derivatives_at(s, q);
+        for (s, rest) in gauss_points().into_iter().zip(self.rest[stencil]) {
+            let [tangent, a, b] = point_weights(s).map(|w| -> [R; 3] {
+                std::array::from_fn(|axis| {
+                    (0..9).fold(R::from(0.0), |sum, n| sum + q[3 * n + axis] * w[n])
+                })
+            });
             if edge.stiffness > 0.0 {
-                let angle = turning_angle(&[[R::from(0.0); 3], tangent, a, b]);
+                let angle = turning_angle(&[[R::from(0.0); 3], tangent, a, b]) - rest;
                 energy = energy + angle * angle * (0.5 * edge.stiffness);
             }
             for (side, into) in [a, b].into_iter().enumerate() {
@@ -274,34 +281,6 @@ impl SecondOrderEdges {
             }
         }
         energy
-    }
-}
-
-/// T, a and b at a point of the edge.
-fn derivatives_at<R: Real>(s: f64, q: &[R; 27]) -> [[R; 3]; 3] {
-    point_weights(s).map(|weights| {
-        std::array::from_fn(|axis| {
-            (0..9).fold(R::from(0.0), |sum, n| sum + q[3 * n + axis] * weights[n])
-        })
-    })
-}
-
-/// θ at the two Gauss points; 0 at edges of the boundary.
-impl BendingStrains<27, 9> for SecondOrderEdges {
-    const STRAINS: usize = 2;
-
-    fn strains<R: Real>(&self, stencil: usize, q: &[R; 27], strains: &mut [R]) {
-        if self.edges[stencil].stiffness == 0.0 {
-            return;
-        }
-        for (s, strain) in gauss_points().into_iter().zip(strains) {
-            let [tangent, a, b] = derivatives_at(s, q);
-            *strain = turning_angle(&[[R::from(0.0); 3], tangent, a, b]);
-        }
-    }
-
-    fn strain_stiffness(&self, stencil: usize) -> f64 {
-        self.edges[stencil].stiffness
     }
 }
 
@@ -318,6 +297,7 @@ impl WingFunctionals<27> {
 
 impl LocalEnergy<27, 9> for SecondOrderEdges {
     const NODE_SIZES: [usize; 9] = [3; 9];
+    const MEASURES: usize = 2;
 
     fn name(&self) -> &'static str {
         "bending"
@@ -333,9 +313,8 @@ impl LocalEnergy<27, 9> for SecondOrderEdges {
 
     fn value(&self, stencil: usize, q: &SVector<f64, 27>) -> f64 {
         let points = self.gauss_points(stencil, q);
-        points
-            .iter()
-            .map(|point| self.value_at(stencil, point))
+        (points.iter().zip(self.rest[stencil]))
+            .map(|(point, rest)| self.value_at(stencil, point, rest))
             .sum()
     }
 
@@ -343,9 +322,9 @@ impl LocalEnergy<27, 9> for SecondOrderEdges {
         let edge = &self.edges[stencil];
         let mut value = 0.0;
         let mut gradient = SVector::zeros();
-        for point in self.gauss_points(stencil, q) {
-            value += self.value_at(stencil, &point);
-            let moment = edge.stiffness * point.angle();
+        for (point, rest) in self.gauss_points(stencil, q).iter().zip(self.rest[stencil]) {
+            value += self.value_at(stencil, point, rest);
+            let moment = edge.stiffness * (point.angle() - rest);
             for (side, wing) in point.wings.iter().enumerate() {
                 let Some(wing) = wing else { continue };
                 let force =
@@ -369,6 +348,19 @@ impl LocalEnergy<27, 9> for SecondOrderEdges {
         kept: f64,
     ) -> LocalHessian<27> {
         self.derivatives(stencil, q, kept)
+    }
+
+    fn measure(&self, stencil: usize, q: &SVector<f64, 27>, measures: &mut [f64]) {
+        let points = self.gauss_points(stencil, q);
+        measures.copy_from_slice(&points.map(|point| point.angle()));
+    }
+
+    fn rest(&self, stencil: usize, measures: &mut [f64]) {
+        measures.copy_from_slice(&self.rest[stencil]);
+    }
+
+    fn set_rest(&mut self, stencil: usize, measures: &[f64]) {
+        self.rest[stencil].copy_from_slice(measures);
     }
 
     fn describe(&self, stencil: usize) -> String {

@@ -1,7 +1,7 @@
 //! Second-order discrete shells, DS(2nd): bending of the quadratic patches.
 //!
 //! ```text
-//! E = Σ_faces (C/2) Ā Σ_n ω_n (tr Ī⁻¹ II(s_n, t_n))²,    tr Ī⁻¹ II = w · n,    w = Σ_ab Ī⁻¹_ab ∂_a ∂_b r
+//! E = Σ_faces (C/2) Ā Σ_n ω_n (tr Ī⁻¹ II(s_n, t_n) − f̄_n)²,    tr Ī⁻¹ II = w · n,    w = Σ_ab Ī⁻¹_ab ∂_a ∂_b r
 //! ```
 //!
 //! r(s, t) the quadratic patch through the corners and the points of the edges, n its unit normal, C flexural rigidity
@@ -21,7 +21,6 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::BendingStrains;
 use super::quadratic_basis::{CURVATURES, SAMPLES, slopes};
 use super::quadratic_form::{Functional, QuadraticForm};
 use crate::Vec3;
@@ -38,6 +37,8 @@ pub struct SecondOrderFaces {
     frames: Vec<RestFrame>,
     /// C of every face.
     rigidities: Vec<f64>,
+    /// f̄ at the samples of every face: 0 but for damping.
+    rest: Vec<[f64; 3]>,
 }
 
 /// The numbers of a sample.
@@ -73,6 +74,7 @@ impl SecondOrderFaces {
                 .zip(mesh.face_edges())
                 .map(nodes)
                 .collect(),
+            rest: vec![[0.0; 3]; frames.len()],
             frames,
             rigidities,
         }
@@ -117,8 +119,8 @@ impl SecondOrderFaces {
         let (stiffness, trace_weights) = (self.stiffness(face), self.trace_weights(face));
         let mut form = QuadraticForm::<18>::zero(kept);
         let mut local = LocalHessian::zero();
-        for sample in self.samples(face, q) {
-            let f = sample.curvature;
+        for (sample, rest) in self.samples(face, q).into_iter().zip(self.rest[face]) {
+            let f = sample.curvature - rest;
             let slope = sample.slope(&trace_weights);
             form.add_square(2.0 * stiffness, &slope);
             let moment = 2.0 * stiffness * f;
@@ -137,7 +139,7 @@ impl SecondOrderFaces {
             for direction in [first, sample.normal.cross(&first)] {
                 let [p, r] = sample.dual.map(|v| v.dot(&direction));
                 let turning = std::array::from_fn(|i| p * normals[0][i] + r * normals[1][i]);
-                form.add_square(-moment * f, &turning);
+                form.add_square(-moment * sample.curvature, &turning);
             }
             local.value += stiffness * f * f;
             local.gradient += SVector::from(slope) * moment;
@@ -148,38 +150,26 @@ impl SecondOrderFaces {
 
     /// E of one face over any numbers: the oracle of the tests.
     pub fn formula<R: Real>(&self, face: usize, q: &[R; 18]) -> R {
-        let mut traces = [R::from(0.0); 3];
-        self.strains(face, q, &mut traces);
-        let squares = traces.map(|trace| trace * trace);
-        (squares[0] + squares[1] + squares[2]) * self.stiffness(face)
-    }
-}
-
-/// tr Ī⁻¹ II at the three samples.
-impl BendingStrains<18, 6> for SecondOrderFaces {
-    const STRAINS: usize = 3;
-
-    fn strains<R: Real>(&self, face: usize, q: &[R; 18], strains: &mut [R]) {
         let sum = |weight: &dyn Fn(usize) -> f64| -> [R; 3] {
             std::array::from_fn(|axis| {
                 (0..6).fold(R::from(0.0), |total, n| total + q[3 * n + axis] * weight(n))
             })
         };
         let [m11, m12, m22] = self.frames[face].inverse;
-        for (point, strain) in SAMPLES.into_iter().zip(strains) {
+        let mut energy = R::from(0.0);
+        for (point, rest) in SAMPLES.into_iter().zip(self.rest[face]) {
             let a = sum(&|n| slopes(point)[n][0]);
             let b = sum(&|n| slopes(point)[n][1]);
             let normal = cross(&a, &b);
             let length = norm(&normal);
             let form = |k: usize| dot(&sum(&|n| CURVATURES[n][k]), &normal) / length;
-            *strain = form(0) * (m11 * m11 + m12 * m12)
+            let trace = form(0) * (m11 * m11 + m12 * m12)
                 + form(1) * (2.0 * m12 * m22)
-                + form(2) * (m22 * m22);
+                + form(2) * (m22 * m22)
+                - rest;
+            energy = energy + trace * trace * self.stiffness(face);
         }
-    }
-
-    fn strain_stiffness(&self, face: usize) -> f64 {
-        2.0 * self.stiffness(face)
+        energy
     }
 }
 
@@ -204,6 +194,7 @@ impl Sample {
 
 impl LocalEnergy<18, 6> for SecondOrderFaces {
     const NODE_SIZES: [usize; 6] = [3; 6];
+    const MEASURES: usize = 3;
 
     fn name(&self) -> &'static str {
         "bending"
@@ -218,17 +209,18 @@ impl LocalEnergy<18, 6> for SecondOrderFaces {
     }
 
     fn value(&self, stencil: usize, q: &SVector<f64, 18>) -> f64 {
-        let squares = self.samples(stencil, q).map(|s| s.curvature * s.curvature);
-        self.stiffness(stencil) * squares.iter().sum::<f64>()
+        let samples = self.samples(stencil, q).into_iter().zip(self.rest[stencil]);
+        let squares = samples.map(|(sample, rest)| (sample.curvature - rest).powi(2));
+        self.stiffness(stencil) * squares.sum::<f64>()
     }
 
     fn gradient(&self, stencil: usize, q: &SVector<f64, 18>) -> (f64, SVector<f64, 18>) {
         let (stiffness, trace_weights) = (self.stiffness(stencil), self.trace_weights(stencil));
         let (mut value, mut gradient) = (0.0, SVector::zeros());
-        for sample in self.samples(stencil, q) {
-            value += stiffness * sample.curvature * sample.curvature;
-            gradient +=
-                SVector::from(sample.slope(&trace_weights)) * (2.0 * stiffness * sample.curvature);
+        for (sample, rest) in self.samples(stencil, q).into_iter().zip(self.rest[stencil]) {
+            let f = sample.curvature - rest;
+            value += stiffness * f * f;
+            gradient += SVector::from(sample.slope(&trace_weights)) * (2.0 * stiffness * f);
         }
         (value, gradient)
     }
@@ -244,6 +236,19 @@ impl LocalEnergy<18, 6> for SecondOrderFaces {
         kept: f64,
     ) -> LocalHessian<18> {
         self.derivatives(stencil, q, kept)
+    }
+
+    fn measure(&self, stencil: usize, q: &SVector<f64, 18>, measures: &mut [f64]) {
+        let samples = self.samples(stencil, q);
+        measures.copy_from_slice(&samples.map(|sample| sample.curvature));
+    }
+
+    fn rest(&self, stencil: usize, measures: &mut [f64]) {
+        measures.copy_from_slice(&self.rest[stencil]);
+    }
+
+    fn set_rest(&mut self, stencil: usize, measures: &[f64]) {
+        self.rest[stencil].copy_from_slice(measures);
     }
 
     fn describe(&self, stencil: usize) -> String {

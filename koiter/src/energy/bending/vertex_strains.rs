@@ -4,8 +4,8 @@
 //! Φ = ½ Σ_i w_i (s_i − s̄_i)²,    s_i = ((L + N) x)_i · n_i / |n_i|,    n_i = Σ_faces at i (x_b − x_a) × (x_c − x_a)
 //! ```
 //!
-//! w and L + N are those of [`super::QuadraticVertex`]; s has the sign of the curvature and turns with the shell, as the strains
-//! of [`super::BendingStrains`] do. It is there for damping: second derivatives are those of Gauss and Newton, `w ∇s ∇sᵀ`, which are
+//! w and L + N are those of [`super::QuadraticVertex`]; s has the sign of the curvature and turns with the shell, as those of
+//! [`super::HingeStrains`] do. It is there for damping: second derivatives are those of Gauss and Newton, `w ∇s ∇sᵀ`, which are
 //! the true ones where s = s̄ and never negative.
 
 use super::quadratic_vertex::QuadraticVertex;

@@ -18,6 +18,11 @@ use crate::rest::RestFrame;
 /// Quantities of an element at most, velocities included.
 pub(super) const MAX_QUANTITIES: usize = 24;
 
+/// Whether a quantity of this name changes with the shape.
+pub(crate) fn is_of_shape(name: &str) -> bool {
+    !name.starts_with("rest_") && !["mass", "thickness"].contains(&name)
+}
+
 /// Elements of one kind, of `N` unknowns in `K` points.
 pub trait Elements<const N: usize, const K: usize>: Clone + Send + Sync {
     /// Names of their quantities.

@@ -29,10 +29,12 @@ mod potential_damping;
 mod program;
 mod rate_potential;
 mod settings;
+mod tangent;
 mod tokens;
 mod whole_potential;
 mod whole_shell;
 
+pub(crate) use elements::is_of_shape;
 pub use elements::{
     EdgeElement, Edges, Elements, FaceElement, Faces, HingeElement, Hinges, VertexElement, Vertices,
 };

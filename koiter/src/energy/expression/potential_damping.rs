@@ -1,17 +1,20 @@
 //! Damping of an energy that is written as an expression: of the rates of the quantities it names, as it is stiff in them.
 //!
 //! ```text
-//! D(q) = b/τ Σ_s m_s ½ dᵀ F_s d,    d = quantities of s − those without motion,    F_s the positive part of ∇²f there
+//! D(q) = b/τ Σ_s m_s ½ dᵀ F_s d,    d = quantities of s − those without motion
 //! ```
 //!
-//! For f quadratic in strains it is the damping of a Kelvin–Voigt material, `−b ∂sᵀ ∇²f ṡ`. Quantities that turn with the shell leave
-//! rigid motions alone; of positions and directions, which do not, it damps what f holds back. An f that is linear in them
-//! (a weight, a tension) has none.
+//! F_s the positive part of ∇²f there, by the quantities that change with the shape ([`damped_part`]). For f quadratic in strains it
+//! is the damping of a Kelvin–Voigt material, `−b ∂sᵀ ∇²f ṡ`. Quantities that turn with the shell leave rigid motions alone; of
+//! positions and directions, which do not, it damps what f holds back. An f that is linear in them (a weight, a tension) has
+//! none, nor has what of f is linear in a quantity each. Angles count as they are, in (−π, π]: around a closed hinge the damping
+//! of a step is not what it should be.
 
 use nalgebra::DMatrix;
 
-use super::elements::{Elements, MAX_QUANTITIES};
+use super::elements::{Elements, MAX_QUANTITIES, is_of_shape};
 use super::potential::Potential;
+use super::tangent::damped_part;
 use crate::assembly::{Dof, ElementFunction};
 use crate::geometry::{Jet, Real};
 
@@ -19,7 +22,7 @@ use crate::geometry::{Jet, Real};
 #[derive(Clone, Debug)]
 pub struct PotentialDamping<E> {
     of: Potential<E>,
-    /// Which quantities count, of those with names.
+    /// The quantities that count, of those with names: what is used and not constant.
     used: Vec<usize>,
     /// The place of an angle among them: the nearest of its values counts.
     angle: Option<usize>,
@@ -36,7 +39,7 @@ impl<E> PotentialDamping<E> {
         E: Elements<N, K>,
     {
         let used: Vec<usize> = (0..E::NAMES.len())
-            .filter(|&i| of.program().used()[i])
+            .filter(|&i| of.program().used()[i] && is_of_shape(E::NAMES[i]))
             .collect();
         Self {
             angle: used.iter().position(|&i| E::NAMES[i] == "angle"),
@@ -47,7 +50,7 @@ impl<E> PotentialDamping<E> {
         }
     }
 
-    /// The positive part of ∇²f by the used quantities; none where f is not defined.
+    /// F; 0 where f is not defined.
     fn tangent(&self, quantities: &[f64]) -> DMatrix<f64> {
         let count = self.used.len();
         let mut jets = [Jet::<MAX_QUANTITIES>::from(0.0); MAX_QUANTITIES];
@@ -56,12 +59,7 @@ impl<E> PotentialDamping<E> {
         }
         let f = self.of.value_of(&jets);
         let tangent = DMatrix::from_fn(count, count, |i, j| f.hessian(self.used[i], self.used[j]));
-        if !tangent.iter().all(|entry| entry.is_finite()) {
-            return DMatrix::zeros(count, count);
-        }
-        let mut eigen = tangent.symmetric_eigen();
-        eigen.eigenvalues.apply(|value| *value = value.max(0.0));
-        eigen.recompose()
+        damped_part(&tangent)
     }
 }
 

@@ -50,8 +50,8 @@ pub struct RatePotential<E> {
 }
 
 impl<E> RatePotential<E> {
-    /// `program` is parsed with [`super::ElementKind::rate_names`]; `is_density`: its value is by rest area or rest length. Nothing moves until
-    /// a step begins.
+    /// `program` is parsed with [`super::ElementKind::rate_names`]; `is_density`: its value is by rest area or rest length.
+    /// Nothing moves until a step begins.
     pub fn new<const N: usize, const K: usize>(
         name: String,
         elements: E,

@@ -9,10 +9,11 @@
 //! and costs two more substitutions. Those with negative weight are left out there, as clamped curvature is: of such an f (one that is
 //! concave in the volume) convergence is linear.
 
-use nalgebra::Matrix2;
+use nalgebra::{DMatrix, Matrix2};
 
 use super::program::Program;
 use super::settings::Settings;
+use super::tangent::damped_part;
 use super::whole_shell::WholeShell;
 use crate::Vec3;
 use crate::assembly::{
@@ -222,13 +223,8 @@ impl RestMeasures for WholeDamping {
     fn set_rest(&mut self, rest: &[f64]) {
         self.rest = [rest[0], rest[1]];
         let f = self.of.function(self.rest);
-        let mut tangent = Matrix2::from_fn(|i, j| f.hessian(i, j));
-        if !tangent.iter().all(|entry| entry.is_finite()) {
-            tangent = Matrix2::zeros();
-        }
-        let mut eigen = tangent.symmetric_eigen();
-        eigen.eigenvalues = eigen.eigenvalues.map(|value| value.max(0.0));
-        self.tangent = eigen.recompose();
+        let kept = damped_part(&DMatrix::from_fn(2, 2, |i, j| f.hessian(i, j)));
+        self.tangent = Matrix2::from_fn(|i, j| kept[(i, j)]);
     }
 
     fn has_branches(&self) -> bool {

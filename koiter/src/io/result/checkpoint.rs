@@ -263,6 +263,7 @@ impl Bytes {
                 self.0.push(stable.is_some().into());
                 if let Some(stable) = stable {
                     self.f64(stable.dt);
+                    self.f64(stable.found_for);
                     self.u64(stable.age);
                     self.f64(stable.speed);
                     self.numbers(&stable.settings);
@@ -404,6 +405,7 @@ fn memory(reader: &mut ByteReader) -> Option<Memory> {
                 0 => None,
                 _ => Some(StableStep {
                     dt: reader.f64()?,
+                    found_for: reader.f64()?,
                     age: reader.u64()?,
                     speed: reader.f64()?,
                     settings: numbers(reader)?,

@@ -10,7 +10,7 @@ use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
 use super::check::{Checked, all_finite, check_schedule, check_select, check_shell_name, error};
 use super::{ENERGY_NAMES, SceneSpec, SelectSpec};
-use crate::energy::expression::{ElementKind, ExpressionError, Names};
+use crate::energy::expression::{ElementKind, ExpressionError, Names, is_of_shape};
 use crate::scene::document::suggest;
 use crate::scene::error::{SceneError, SceneErrorKind as Kind};
 use crate::scene::expressions::{TextEnergy, TextValue};
@@ -162,6 +162,9 @@ impl EnergySpec {
     }
 }
 
+/// Names of velocities.
+const VELOCITIES: [&str; 3] = ["vx", "vy", "vz"];
+
 /// Names that a step lists beside those of energies.
 const OTHER_NAMES: [&str; 2] = ["friction", "damping"];
 
@@ -201,7 +204,32 @@ pub(super) fn check_energy(energy: &EnergySpec, spec: &SceneSpec) -> Checked {
         Some(Err(mistake)) => return Err(in_text(mistake, &at(key), energy, value)),
         None => return Ok(()),
     };
+    check_effect(&at(key), energy, value, program.used())?;
     check_integrators(&at(key), energy, value, program.uses_time(), spec)
+}
+
+/// Refuses what depends on nothing that moves, and so is no force.
+fn check_effect(path: &str, energy: &EnergySpec, value: TextValue, used: &[bool]) -> Checked {
+    let names = energy.on.rate_names();
+    let counts = |name: &str| match value.is_dissipation {
+        true => VELOCITIES.contains(&name),
+        false => is_of_shape(name),
+    };
+    let mut named = names.iter().zip(used).filter(|(_, used)| **used);
+    if named.any(|(name, _)| counts(name)) {
+        return Ok(());
+    }
+    let (message, help) = match value.is_dissipation {
+        true => (
+            "the dissipation names no velocity, so it is no force",
+            "name vx, vy or vz; what depends on the shape alone is an 'energy' or a 'density'",
+        ),
+        false => (
+            "the energy names nothing that changes with the shape, so it is no force",
+            "name a quantity that does, such as z, length, angle or area",
+        ),
+    };
+    Err(error(Kind::Conflict, path, message.to_owned()).with_help(help))
 }
 
 /// What a whole shell does not have.
@@ -258,9 +286,8 @@ fn in_text(
         None => Kind::Syntax,
     };
     let refused = error(kind, path, mistake.to_string());
-    let velocities = ["vx", "vy", "vz"];
     let help = match mistake.unknown_name.as_deref() {
-        Some(name) if velocities.contains(&name) && !value.is_dissipation => {
+        Some(name) if VELOCITIES.contains(&name) && !value.is_dissipation => {
             Some("velocities are for 'dissipation' and 'dissipation_density'".to_owned())
         }
         Some(name) if !mistake.message.contains("function") => {

@@ -99,6 +99,7 @@ fn what_was_written_is_read_back() {
     let explicit = Memory::Accelerated {
         stable: Some(StableStep {
             dt: 1e-4,
+            found_for: 9e-5,
             age: 7,
             speed: 0.5,
             settings: vec![2.0, -1.0],
