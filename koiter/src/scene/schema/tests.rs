@@ -25,6 +25,7 @@ thickness = 1e-3
 area_density = 0.1
 [[bezier_shell]]
 name = "vessel"
+material = { preset = "cotton", layers = [{ thickness = 1e-3, young = 1e6 }] }
 mesh.grid = { size = [1.0, 1.0], cells = [2, 2] }
 [[procedure]]
 name = "incision"
