@@ -24,10 +24,27 @@ fn an_energy_is_an_expression_of_an_element_with_parameters() {
         let spec = with(energy).unwrap().spec;
         assert_eq!(spec.energy[0].name, "e");
     }
-    let ramp = with("on = \"edge\"\nenergy = \"f\"\nparameters.f = [[0, 1], [2, 3]]").unwrap();
+    let ramp =
+        with("on = \"edge\"\nenergy = \"f * length\"\nparameters.f = [[0, 1], [2, 3]]").unwrap();
     assert_eq!(ramp.spec.energy[0].parameters["f"].0.at(1.0), 2.0);
-    let constant = with("on = \"edge\"\nenergy = \"f\"\nparameters.f = 7").unwrap();
+    let constant = with("on = \"edge\"\nenergy = \"f * length\"\nparameters.f = 7").unwrap();
     assert_eq!(constant.spec.energy[0].parameters["f"].0.at(1.0), 7.0);
+}
+
+#[test]
+fn what_is_no_force_is_refused() {
+    for (energy, words) in [
+        ("on = \"edge\"\nenergy = \"5\"", "nothing that changes"),
+        (
+            "on = \"vertex\"\nenergy = \"mass * rest_z\"",
+            "nothing that changes",
+        ),
+        ("on = \"vertex\"\ndissipation = \"z^2\"", "no velocity"),
+    ] {
+        let error = mistake_of(energy);
+        assert_eq!(error.kind, Kind::Conflict);
+        assert!(error.message.contains(words), "{error}");
+    }
 }
 
 #[test]
