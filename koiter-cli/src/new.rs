@@ -166,6 +166,7 @@ mod tests {
                     "membrane",
                     "discrete_shells",
                     "damping",
+                    "burning",
                 ],
             ),
             (&schema["$defs"]["ConstraintSpec"]["properties"], &[]),
