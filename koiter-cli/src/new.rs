@@ -167,6 +167,7 @@ mod tests {
                     "discrete_shells",
                     "damping",
                     "burning",
+                    "temperature",
                 ],
             ),
             (&schema["$defs"]["ConstraintSpec"]["properties"], &[]),
