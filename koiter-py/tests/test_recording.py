@@ -103,8 +103,13 @@ def test_ctrl_c_ends_a_run_after_its_step(hanging, tmp_path):
 
     hanging["output"] = {"every_steps": 100}
     simulation = hanging.start()
-    with pytest.raises(KeyboardInterrupt):
-        for step in simulation.run(out=tmp_path):
-            if step.step == 2:
-                signal.raise_signal(signal.SIGINT)
+    # Tests that run in the background are started with Ctrl-C ignored.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            for step in simulation.run(out=tmp_path):
+                if step.step == 2:
+                    signal.raise_signal(signal.SIGINT)
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert koiter.Result(tmp_path).summary["interrupted"]
