@@ -48,40 +48,7 @@ fn simulation(scene: &str, overrides: &[&str]) -> Simulation {
 }
 
 /// A strip heated from above, its layers apart; held so that it can shrink and curl.
-const STRIP: &str = r#"
-time = { end = 0.2, dt = 0.02 }
-integrator = "quasi-static"
-gravity = [0, 0, 0]
-contact.enabled = false
-solver.displacement_tolerance = 1e-9
-
-[[shell]]
-name = "strip"
-mesh.grid = { size = [0.02, 0.001], cells = [40, 2] }
-material = { young = 1e9, poisson = 0, density = 700 }
-thickness = 1e-3
-burning = { diffusivity = 0, exchange_rate = 0, cooling_rate = 0, heat_of_combustion = 0, loss_rate = 0.003, smallest_mass = 0.2, loss_level = 0.2 }
-
-[[heat_source]]
-name = "lamp"
-temperature = 900
-rate = 1000
-side = "top"
-
-[[constraint]]
-shell = "strip"
-select.nearest = [0, 0, 0]
-
-[[constraint]]
-shell = "strip"
-axes = "yz"
-select.nearest = [0.0005, 0, 0]
-
-[[constraint]]
-shell = "strip"
-axes = "z"
-select.nearest = [0, 0.0005, 0]
-"#;
+const STRIP: &str = include_str!("../../benchmarks/burning-strip/strip.toml");
 
 /// Curvature of the middle line [1/m], by the circle through three of its points away from the ends; positive where it fans
 /// out upwards, as on top of a ball.

@@ -16,48 +16,7 @@ const STEPS: usize = 10;
 const CELLS: usize = 40;
 
 /// A quasi-static strip under a lamp, held so that it can shrink and curl.
-const STRIP: &str = r#"
-time = { end = 0.2, dt = 0.02 }
-integrator = "quasi-static"
-gravity = [0, 0, 0]
-contact.enabled = false
-solver.displacement_tolerance = 1e-9
-
-[[shell]]
-name = "strip"
-mesh.grid = { size = [0.02, 0.001], cells = [40, 2] }
-material = { young = 1e9, poisson = 0, density = 700 }
-thickness = 1e-3
-
-[shell.burning]
-diffusivity = 0
-exchange_rate = 0
-cooling_rate = 0
-heat_of_combustion = 0
-loss_rate = 0.003
-smallest_mass = 0.2
-loss_level = 0.2
-
-[[heat_source]]
-name = "lamp"
-temperature = 900
-rate = 1000
-side = "top"
-
-[[constraint]]
-shell = "strip"
-select.nearest = [0, 0, 0]
-
-[[constraint]]
-shell = "strip"
-axes = "yz"
-select.nearest = [0.0005, 0, 0]
-
-[[constraint]]
-shell = "strip"
-axes = "z"
-select.nearest = [0, 0.0005, 0]
-"#;
+const STRIP: &str = include_str!("../../../../benchmarks/burning-strip/strip.toml");
 
 pub(super) fn table() -> Result<Table, Failure> {
     let mut table = Table::new(
