@@ -108,8 +108,7 @@ impl MappedContact {
     /// Nothing is kept of the steps before but the stiffness of the barrier ([`Self::kappa`]).
     pub fn begin_step(&mut self, pose: &Pose, dt: f64) {
         let q = self.unknowns(pose);
-        self.contact.forget_search();
-        self.contact.prepare(&q);
+        self.contact.begin_step(&q);
         self.friction.smoothing = self.friction_speed * dt;
         self.contact.lag(&q, &mut self.friction);
         self.friction.start = q;

@@ -4,11 +4,12 @@ use super::barrier::LogBarrier;
 use super::candidates::Candidates;
 use super::collision_mesh::CollisionMesh;
 use super::friction_table::FrictionTable;
+use super::neighbours::list_margin;
 use super::pair::{Pair, PairKind, mollify};
 use super::plane::CollisionPlane;
 use super::search::Limiter;
 use crate::Vec3;
-use crate::assembly::{DofLayout, parallel_map};
+use crate::assembly::{DofLayout, Energy, parallel_map};
 use crate::geometry::ClosestPoints;
 
 /// The mollifier's threshold relative to the squared rest lengths of the two edges ("Incremental Potential Contact").
@@ -26,6 +27,8 @@ pub struct Contact {
     pub(super) d_hat: f64,
     pub(super) kappa: f64,
     pub(super) largest_kappa: f64,
+    /// What lists of neighbours look further than the barrier reaches [m].
+    pub(super) margin: f64,
     pub(super) candidates: Candidates,
     /// Candidates whose barrier acts at the last refresh.
     pub(super) active: Vec<Pair>,
@@ -65,6 +68,7 @@ impl Contact {
     ) -> Self {
         Self {
             friction: FrictionTable::new(&mesh, &planes),
+            margin: list_margin(&mesh, d_hat),
             mesh,
             planes,
             layout,
@@ -103,9 +107,21 @@ impl Contact {
         self.kappa = kappa;
     }
 
-    /// Makes the coming search for pairs independent of those before: the shape of the trees decides the order of the
-    /// pairs, and with it the last bits of every sum over them.
-    pub fn forget_search(&mut self) {
+    /// Begins a step at `q`: finds the pairs in reach as if there had been no search before. The shape of the trees and the
+    /// list of neighbours decide the order of the pairs, and with it the last bits of every sum over them.
+    pub fn begin_step(&mut self, q: &[f64]) {
+        let is_new = self.candidates.searches == 1
+            && self
+                .candidates
+                .neighbours
+                .were_listed_at(&self.positions(q));
+        if !is_new {
+            self.forget_search();
+        }
+        self.prepare(q);
+    }
+
+    fn forget_search(&mut self) {
         self.candidates = Candidates::default();
     }
 
@@ -123,6 +139,13 @@ impl Contact {
             2
         };
         self.mesh.offset(pair.vertices[0]) + self.mesh.offset(pair.vertices[other])
+    }
+
+    /// Gap between the surfaces of a pair, by positions of the vertices of the collision mesh [m].
+    #[inline]
+    pub(super) fn gap(&self, pair: &Pair, x: &[Vec3]) -> f64 {
+        let positions = pair.vertices.map(|v| x[v as usize]);
+        pair.distance_squared(&positions).sqrt() - self.touching_distance(pair)
     }
 
     #[inline]

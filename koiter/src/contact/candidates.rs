@@ -3,6 +3,7 @@
 use super::boxes::Aabb;
 use super::broad_phase::BoxTree;
 use super::collision_mesh::CollisionMesh;
+use super::neighbours::{Neighbours, mean};
 use super::pair::{Pair, PairKind};
 use crate::Vec3;
 use crate::assembly::parallel_map;
@@ -19,6 +20,9 @@ const CANDIDATES_AT_LEAST: usize = 20_000_000;
 pub(super) struct Candidates {
     /// Vertex–face pairs, then edge–edge pairs.
     pub(super) pairs: Vec<Pair>,
+    pub(super) neighbours: Neighbours,
+    /// Times the trees were searched.
+    pub(super) searches: usize,
     face_tree: SweptTree,
     edge_tree: SweptTree,
 }
@@ -43,11 +47,6 @@ impl SweptTree {
     }
 }
 
-/// The mean of motions: seen by whoever moves along with it, what flies as a whole sweeps little.
-fn mean(motions: &[Vec3]) -> Vec3 {
-    motions.iter().sum::<Vec3>() / motions.len().max(1) as f64
-}
-
 impl Candidates {
     /// What `check` makes of all pairs whose surfaces, by their boxes, come within `reach` of each other anywhere between
     /// `x` and `x + dx`; vertex–face pairs, then edge–edge pairs. `None` if there are too many.
@@ -59,7 +58,7 @@ impl Candidates {
         dx: Option<&[Vec3]>,
         check: impl Fn(Pair) -> Option<T> + Sync + Send,
     ) -> Option<Vec<T>> {
-        let shared = dx.map_or(Vec3::zeros(), mean);
+        let shared = dx.map_or(Vec3::zeros(), |dx| mean(dx.iter().copied()));
         let swept = |vertices: &[u32]| {
             let margin = mesh.offset(vertices[0]) + 0.5 * reach;
             let at = |v: &u32| x[*v as usize];
@@ -77,6 +76,7 @@ impl Candidates {
         let vertex_boxes = parallel_map(mesh.vertices.len(), |v| swept(&[v as u32]));
         let edge_boxes = parallel_map(mesh.edges.len(), |e| swept(&mesh.edges[e]));
         let face_boxes = parallel_map(mesh.faces.len(), |f| swept(&mesh.faces[f]));
+        self.searches += 1;
         self.face_tree.update(&face_boxes);
         self.edge_tree.update(&edge_boxes);
         let both_obstacles = |a: u32, b: u32| mesh.is_obstacle(a) && mesh.is_obstacle(b);

@@ -16,6 +16,7 @@ mod collision_mesh;
 mod energy;
 mod friction;
 mod friction_table;
+mod neighbours;
 mod obstacle;
 mod pair;
 mod plane;

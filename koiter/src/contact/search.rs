@@ -79,7 +79,11 @@ impl Contact {
             (approach.nearest < self.touching_distance(&pair) + self.d_hat)
                 .then_some((pair, approach.fraction))
         };
-        let found = candidates.find(&self.mesh, self.d_hat, x, Some(dx), near);
+        let found = if self.neighbours_cover(&mut candidates, x, dx) {
+            Some(candidates.neighbours.checked(near))
+        } else {
+            candidates.find(&self.mesh, self.d_hat, x, Some(dx), near)
+        };
         self.candidates = candidates;
         found
     }

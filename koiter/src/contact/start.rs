@@ -58,7 +58,13 @@ impl Contact {
         let x = self.positions(q);
         let mut found = self.crossings(&x);
         let mut candidates = std::mem::take(&mut self.candidates);
-        let overlaps = candidates.find(&self.mesh, 0.0, &x, None, |pair| self.overlap(&pair, &x));
+        let overlap = |pair: Pair| self.overlap(&pair, &x);
+        let overlaps = if self.neighbours_cover(&mut candidates, &x, &vec![Vec3::zeros(); x.len()])
+        {
+            Some(candidates.neighbours.checked(overlap))
+        } else {
+            candidates.find(&self.mesh, 0.0, &x, None, overlap)
+        };
         self.candidates = candidates;
         if let Some(overlaps) = overlaps {
             found.extend(overlaps);
@@ -121,8 +127,7 @@ impl Contact {
 
     /// The pair, if its surfaces are no further apart than nothing.
     fn overlap(&self, pair: &Pair, x: &[Vec3]) -> Option<TouchingPair> {
-        let positions = pair.vertices.map(|v| x[v as usize]);
-        let gap = pair.distance_squared(&positions).sqrt() - self.touching_distance(pair);
+        let gap = self.gap(pair, x);
         if gap > 0.0 {
             return None;
         }

@@ -102,9 +102,7 @@ impl System {
             layout: self.layout.clone(),
         };
         if let Some(contact) = &mut self.contact {
-            contact.forget_search();
-            contact.prepare(q);
-            contact.refresh(q);
+            contact.begin_step(q);
             contact.lag(q, &mut friction);
         }
         let options = NewtonOptions {
@@ -313,6 +311,7 @@ impl System {
         let mut seconds = newton.seconds.clone();
         let mut diagnostics = Diagnostics::of_newton(&newton);
         if let Some(contact) = &mut self.contact {
+            contact.begin_step(&next.q);
             let touching = contact.touching(&next.q);
             if !touching.is_empty() {
                 let worst: Vec<&str> = touching
@@ -325,8 +324,6 @@ impl System {
                     details: worst.join("; "),
                 });
             }
-            contact.prepare(&next.q);
-            contact.refresh(&next.q);
             let statistics = contact.statistics();
             (report.contacts, report.min_gap, report.kappa) =
                 (statistics.contacts, statistics.min_gap, statistics.kappa);

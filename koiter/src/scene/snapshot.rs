@@ -3,7 +3,6 @@
 use super::bezier::{BezierBody, BezierState};
 use super::holds::Anchor;
 use super::simulation::Simulation;
-use crate::assembly::Energy;
 use crate::burning::{BurningState, HeatedState};
 use crate::integrate::{Memory, PathPoint, State};
 use crate::process::RestState;
@@ -98,8 +97,7 @@ impl Simulation {
         self.apply_schedules(time);
         if let (Some(contact), Some(kappa)) = (&mut self.system.contact, snapshot.kappa) {
             contact.set_kappa(kappa);
-            contact.prepare(&self.state.q);
-            contact.refresh(&self.state.q);
+            contact.begin_step(&self.state.q);
         }
         Ok(())
     }
