@@ -159,6 +159,11 @@ const SHIPPED: &[Shipped] = &[
         meshes: &[],
     },
     Shipped {
+        name: "shrinking-sheet",
+        text: include_str!("../../scenes/shrinking-sheet/scene.toml"),
+        meshes: &[],
+    },
+    Shipped {
         name: "scordelis-lo-bezier",
         text: include_str!("../../scenes/scordelis-lo-bezier/scene.toml"),
         meshes: &[],

@@ -1,6 +1,8 @@
 //! Scenes with double layers: what is refused, what burns, and that a saved run goes on to the same bits.
 #![cfg(feature = "io")]
 
+use std::collections::BTreeMap;
+
 use koiter::burning::{QuadMesh, Texture};
 use koiter::io::Checkpoint;
 use koiter::io::read::{parse_obj_quads, parse_png};
@@ -20,6 +22,7 @@ mesh.rotate = { axis = [1, 0, 0], degrees = 90 }
 thickness = 3.75e-3
 area_density = 0.08
 burning = { diffusivity = 2e-6 }
+self_collision = { friction = 0.2 }
 
 [[heat_source]]
 name = "ball"
@@ -75,8 +78,16 @@ impl MeshSource for Files {
 fn files() -> Files {
     let quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
     let folded = quad.replace("1 2 3 4", "1 2 4 3");
+    let across = "v .5 .5 -1\nv .5 .6 -1\nv .5 .6 1\nv .5 .5 1\nf 5 6 7 8\n";
+    let png = include_bytes!("../../scenes/hot-sphere/patches.png");
+    // Its header says 2 147 483 647 pixels a row.
+    let mut huge = png.to_vec();
+    huge[16..20].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff]);
     Files(vec![
         ("quad.obj", quad.into()),
+        ("crossed.obj", format!("{quad}{across}").into_bytes()),
+        ("cut.png", png[..png.len() / 2].to_vec()),
+        ("huge.png", huge),
         ("folded.obj", folded.into()),
         ("no.png", b"not an image".to_vec()),
     ])
@@ -146,6 +157,36 @@ fn mistakes_are_told_with_their_place() {
             "no such file",
         ),
         (
+            "double_layer.paper.burning.loss_texture=\"cut.png\"",
+            "double_layer.paper.burning.loss_texture",
+            "not a PNG",
+        ),
+        (
+            "heat_source.ball.texture=\"huge.png\"",
+            "heat_source.ball.texture",
+            "not a PNG",
+        ),
+        (
+            "double_layer.paper.self_collision.distance=0",
+            "double_layer.paper.self_collision.distance",
+            "larger than 0",
+        ),
+        (
+            "double_layer.paper.self_collision.friction=2",
+            "double_layer.paper.self_collision.friction",
+            "from 0 to 1",
+        ),
+        (
+            "double_layer.paper.projection={method=\"mass-spring\",sweeps=3}",
+            "double_layer.paper.projection.sweeps",
+            "mass-spring",
+        ),
+        (
+            "double_layer.paper.projection.stiffness=5",
+            "double_layer.paper.projection.stiffness",
+            "successive",
+        ),
+        (
             "heat_source.ball.rate=0",
             "heat_source.ball.rate",
             "larger than 0",
@@ -186,6 +227,9 @@ fn meshes_of_files_are_checked_and_shells_do_not_stand_beside() {
     );
     let error = mesh("folded.obj").unwrap_err();
     assert!(error.to_string().contains("folded"), "{error}");
+    let error = mesh("crossed.obj").unwrap_err();
+    assert!(error.to_string().contains("crosses itself"), "{error}");
+    assert_eq!(error.path, "double_layer.paper.mesh");
     let shell = "[[shell]]\nname = \"cloth\"\nmaterial = \"cotton\"\nmesh.grid = { size = [1, 1], cells = [2, 2] }\n";
     let both = SceneFile::parse("scene.toml", &format!("{SCENE}{shell}"), &[]).unwrap_err();
     assert_eq!(both.path, "shell.0");
@@ -193,6 +237,59 @@ fn meshes_of_files_are_checked_and_shells_do_not_stand_beside() {
         "{shell}time = {{ end = 1, dt = 0.1 }}\n[[heat_source]]\nname = \"h\"\ntemperature = 900\nrate = 1\n"
     );
     assert!(SceneFile::parse("scene.toml", &alone, &[]).is_err());
+}
+
+#[test]
+fn a_texture_on_a_mesh_without_coordinates_has_no_place() {
+    let scene = SCENE.replace(
+        "mesh.grid = { size = [0.3, 0.3], cells = [8, 8] }",
+        "mesh.file = \"quad.obj\"",
+    );
+    let texture = ["double_layer.paper.burning.diffusivity_texture=\"whole.png\"".to_owned()];
+    let file = SceneFile::parse("scene.toml", &scene, &texture).unwrap();
+    let mut files = files();
+    let png = include_bytes!("../../scenes/hot-sphere/patches.png");
+    files.0.push(("whole.png", png.to_vec()));
+    let error = Scene::build(&file, &files).unwrap_err();
+    assert_eq!(error.path, "double_layer.paper.burning.diffusivity_texture");
+    assert!(error.to_string().contains("vt"), "{error}");
+}
+
+#[test]
+fn everything_may_burn_and_nothing_may_ignite() {
+    let end = |overrides: &[&str]| {
+        let mut simulation = Simulation::new(build(overrides).unwrap().model).unwrap();
+        for _ in 0..60 {
+            simulation.step(0.01).unwrap();
+        }
+        let figures = simulation.burning_measures();
+        assert!(
+            figures.iter().all(|(_, value)| value.is_finite()),
+            "{figures:?}"
+        );
+        let positions = simulation.display_positions();
+        assert!(
+            positions
+                .iter()
+                .flat_map(|x| x.iter())
+                .all(|x| x.is_finite())
+        );
+        (simulation, figures.into_iter().collect::<BTreeMap<_, _>>())
+    };
+    let (burnt, figures) = end(&[
+        "double_layer.paper.temperature=1500",
+        "double_layer.paper.burning.cooling_rate=0",
+    ]);
+    assert_eq!([figures["kept_area"], figures["pieces"]], [0.0, 0.0]);
+    let part = &burnt.present_parts().unwrap()[0];
+    assert_eq!((part.num_vertices, part.faces.len()), (0, 0));
+    let (whole, figures) = end(&["heat_source.ball.temperature=450"]);
+    assert_eq!(
+        [figures["kept_area"], figures["mean_mass_ratio"]],
+        [1.0, 1.0]
+    );
+    assert!(figures["highest_temperature"] > 350.0, "{figures:?}");
+    assert_eq!(whole.present_parts().unwrap()[0].faces.len(), 4 * 64);
 }
 
 #[test]

@@ -116,7 +116,10 @@ pub(crate) struct ConvergenceArguments {
 #[command(after_help = "\
 Examples:
   koiter bench burning
-  koiter bench burning --cells 10,20,40 --iterations 40 --json")]
+  koiter bench burning --scenes
+  koiter bench burning --cells 10,20,40 --iterations 40 --json
+
+The status is 1 if a figure is outside its gate.")]
 pub(crate) struct BurningArguments {
     /// Cells along a side of the sheet: n of them have 10 n² springs
     #[arg(long, value_name = "N", value_delimiter = ',', default_value = "10,20,40,50,100", value_parser = clap::value_parser!(u16).range(2..=1000))]
@@ -127,6 +130,9 @@ pub(crate) struct BurningArguments {
     /// Steps of which the fastest counts
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) steps: u16,
+    /// Run the scenes of double layers and hold them against what the paper shows, instead (two minutes)
+    #[arg(long)]
+    pub(crate) scenes: bool,
 }
 
 #[derive(Debug, Args)]

@@ -1,6 +1,9 @@
 //! `koiter bench burning`: what a step of a double layer costs, how its projections converge, how far burning strips curl.
 
 mod errors;
+mod formulas;
+mod heat;
+mod scenes;
 mod strips;
 
 use koiter::Vec3;
@@ -10,6 +13,7 @@ use koiter::burning::{
 };
 use serde_json::json;
 
+use super::gates::{Gate, Gates};
 use super::table::{Cell, Table};
 use crate::arguments::BurningArguments;
 use crate::failure::Failure;
@@ -25,24 +29,41 @@ const PUBLISHED: [(usize, f64, f64); 5] = [
     (100, 1045.02, 7412.92),
 ];
 
+/// Springs from which time is to grow in proportion to them.
+const LINEAR_FROM: usize = 4000;
 /// Steps before the clock runs.
 const WARM_UP: usize = 3;
 const DT: f64 = 0.002;
 
 pub(super) fn bench(arguments: &BurningArguments, json: bool) -> Result<(), Failure> {
-    let timing = timing(arguments)?;
-    let [competing, sweeps] = [errors::competing_springs(), errors::sweeps()];
-    let strips = strips::table()?;
-    if json {
-        let tables = [&timing, &competing, &sweeps, &strips].map(Table::json);
-        say!("{}", json!({ "bench": "burning", "tables": tables }));
-    } else {
-        say!("{timing}\n\n{competing}\n\n{sweeps}\n\n{strips}");
+    if arguments.scenes {
+        return tell(&[scenes::gates()?.table], json);
     }
-    Ok(())
+    let mut gates = Gates::new("what is to hold");
+    formulas::check(&mut gates);
+    heat::check(&mut gates);
+    let timing = timing(arguments, &mut gates)?;
+    let [competing, sweeps] = [errors::competing_springs(), errors::sweeps()];
+    let strips = strips::table(&mut gates)?;
+    tell(&[timing, competing, sweeps, strips, gates.table], json)
 }
 
-fn timing(arguments: &BurningArguments) -> Result<Table, Failure> {
+fn tell(tables: &[Table], json: bool) -> Result<(), Failure> {
+    if json {
+        let tables: Vec<_> = tables.iter().map(Table::json).collect();
+        say!("{}", json!({ "bench": "burning", "tables": tables }));
+    } else {
+        let texts: Vec<String> = tables.iter().map(ToString::to_string).collect();
+        say!("{}", texts.join("\n\n"));
+    }
+    let failures = tables.iter().flat_map(|table| table.failures.clone());
+    match failures.collect::<Vec<_>>() {
+        failures if failures.is_empty() => Ok(()),
+        failures => Err(Failure::run(failures.join("\n"))),
+    }
+}
+
+fn timing(arguments: &BurningArguments, gates: &mut Gates) -> Result<Table, Failure> {
     let mut table = Table::new(
         "motion of a hanging sheet, 7 sweeps a step, one thread",
         &[
@@ -56,6 +77,7 @@ fn timing(arguments: &BurningArguments) -> Result<Table, Failure> {
             ("times_faster", "times faster, all"),
         ],
     );
+    let (mut a_spring, mut times_faster) = (Vec::new(), Vec::new());
     let [iterations, steps] = [arguments.iterations, arguments.steps].map(usize::from);
     for cells in arguments.cells.iter().copied().map(usize::from) {
         let springs = 10 * cells * cells;
@@ -68,6 +90,10 @@ fn timing(arguments: &BurningArguments) -> Result<Table, Failure> {
         let (converging_ms, taken) = step_cost(cells, converging, steps)?;
         let (fixed_ms, _) = step_cost(cells, fixed, steps)?;
         let published = PUBLISHED.iter().find(|row| row.0 == cells);
+        if springs >= LINEAR_FROM {
+            a_spring.push(fixed_ms / springs as f64);
+        }
+        times_faster.extend(published.map(|row| row.2 / fixed_ms));
         let cell = |value: Option<f64>| value.map_or(Cell::from("-"), Cell::from);
         table.push([
             springs.into(),
@@ -79,6 +105,23 @@ fn timing(arguments: &BurningArguments) -> Result<Table, Failure> {
             cell(published.map(|row| row.2)),
             cell(published.map(|row| row.2 / fixed_ms)),
         ]);
+    }
+    let most = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+    if !a_spring.is_empty() {
+        let spread = most(&a_spring) / least(&a_spring);
+        let figure = "time a spring, slowest over fastest from 4000 springs";
+        gates.check("Table 2", figure, "", spread, Gate::Below(2.0));
+    }
+    if !times_faster.is_empty() {
+        let figure = "times faster than printed, at least";
+        gates.check(
+            "Table 2",
+            figure,
+            "",
+            least(&times_faster),
+            Gate::Above(20.0),
+        );
     }
     Ok(table)
 }
@@ -110,6 +153,7 @@ fn step_cost(
         burning: BurningOptions::default(),
         loss_factors: Vec::new(),
         projection,
+        self_collision: None,
         damping: 0.0,
     };
     let mut burning = BurningShell::new(setup).map_err(Failure::input)?;

@@ -12,6 +12,7 @@ mod creased_vee;
 mod discrete_shells;
 mod drape;
 mod explicit;
+mod gates;
 mod lateral_buckling;
 mod models;
 mod published;

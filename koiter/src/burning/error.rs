@@ -165,6 +165,14 @@ pub enum BurningError {
         /// What it must be.
         expected: &'static str,
     },
+    /// A shell that is to keep out of itself begins crossed.
+    #[error(
+        "the start shape crosses itself: quad {} meets quad {}; a shell with self_collision has to begin apart", quads[0], quads[1]
+    )]
+    CrossesItself {
+        /// Two quads that do.
+        quads: [u32; 2],
+    },
     /// A step led to a value that is not finite.
     #[error(
         "particle {particle} of a double layer has a place, a velocity or a temperature that is not finite after the step to t = {time} s; make dt smaller"

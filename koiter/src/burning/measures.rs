@@ -1,5 +1,6 @@
 //! Figures of a burning shell.
 
+use super::double_layer::Color;
 use super::springs::vector;
 use super::stepper::BurningShell;
 use crate::Vec3;
@@ -19,6 +20,8 @@ pub struct BurningMeasures {
     pub highest_temperature: f64,
     /// Mean of |strain| over the springs of the colour where it is largest.
     pub mean_strain: f64,
+    /// The same of the blue springs, the layer that is seen.
+    pub mean_blue_strain: f64,
     /// Root mean square angle between the normals of quads that are whole and share an edge [rad].
     pub fold_angle: f64,
 }
@@ -38,6 +41,7 @@ impl BurningShell {
             mean_strain: (0..4)
                 .map(|color| self.mean_strain(color))
                 .fold(0.0, f64::max),
+            mean_blue_strain: self.mean_strain(Color::Blue as usize),
             fold_angle: self.fold_angle(),
         }
     }

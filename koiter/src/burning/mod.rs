@@ -9,12 +9,13 @@
 //! | sources, cooling, conduction | [`HeatSource`], [`Conduction`] |
 //! | mass loss, target lengths | [`BurningOptions`] |
 //! | the surface that is left, springs and pieces | [`RenderSurface`], [`Remaining`] |
-//! | motion, projections, bodies | [`BurningShell`], [`Projection`], [`Collider`] |
+//! | motion, projections, bodies, itself | [`BurningShell`], [`Projection`], [`Collider`], [`SelfCollisionOptions`] |
 //!
 //! Paper: "Shrinkage, wrinkling and ablation of burning cloth and paper". Where its printed formulas cannot be meant
 //! (signs, missing factors), the files say what stands in their place.
 
 mod ablation;
+mod collision_surface;
 mod collisions;
 mod diffusion;
 mod double_layer;
@@ -23,12 +24,16 @@ mod global_solve;
 mod heat;
 mod heated_shell;
 mod mass;
+mod mass_spring;
 mod measures;
 mod network;
 mod numbers;
 mod projection;
 mod quad_mesh;
+mod self_collision;
+mod setup;
 mod springs;
+mod state;
 mod stepper;
 mod surface;
 mod texture;
@@ -46,8 +51,11 @@ pub use measures::BurningMeasures;
 pub use network::{Errors, Mobility, Network, StepLimits};
 pub use projection::{Lengths, Projection, ProjectionMethod, ProjectionOptions, ProjectionReport};
 pub use quad_mesh::{MAX_VALENCE, QuadEdge, QuadMesh, QuadSide};
+pub use self_collision::SelfCollisionOptions;
+pub use setup::{BurningSetup, Surroundings};
 pub use springs::Springs;
-pub use stepper::{BurningReport, BurningSetup, BurningShell, BurningState, Surroundings};
+pub use state::BurningState;
+pub use stepper::{BurningReport, BurningShell};
 pub use surface::{Between, RenderSurface};
 pub use texture::Texture;
 pub use triangle_conduction::TriangleConduction;

@@ -21,6 +21,8 @@ pub enum ProjectionMethod {
     Successive,
     /// All at once, with compliance.
     Global,
+    /// No projection: springs pull by Hooke's law, in explicit steps, as those with which the paper compares its own.
+    MassSpring,
 }
 
 /// How springs are projected.
@@ -30,6 +32,8 @@ pub struct ProjectionOptions {
     pub method: ProjectionMethod,
     /// Compliance of the springs in the global way [m/N].
     pub compliance: f64,
+    /// Stiffness of the springs by Hooke's law [N/m].
+    pub stiffness: f64,
     /// Most sweeps over all colours a step, or iterations of the global way.
     pub sweeps: usize,
     /// Sweeps stop when no spring is off its length by more than this share; conjugate gradients when their residual has
@@ -52,6 +56,8 @@ impl Default for ProjectionOptions {
             method: ProjectionMethod::default(),
             // A cell of paper, 2 cm wide, weighs 0.3 mN: it stretches a spring by a nanometre.
             compliance: 1e-5,
+            // The same cell stretches such a spring by 3 µm.
+            stiffness: 100.0,
             sweeps: 7,
             tolerance: 1e-7,
             gradient_iterations: 200,

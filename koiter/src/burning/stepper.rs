@@ -12,16 +12,15 @@ use std::time::Instant;
 
 use super::ablation::Remaining;
 use super::collisions::Collider;
-use super::double_layer::DoubleLayer;
 use super::error::BurningError;
 use super::global_solve::{GlobalLimits, GlobalSolve};
-use super::heat::{Conduction, HeatSource, cool, heat};
-use super::mass::BurningOptions;
+use super::heat::{Conduction, cool, heat};
+use super::mass_spring;
 use super::network::Mobility;
-use super::numbers::{not_negative, positive, share, within};
-use super::projection::{
-    Lengths, Projection, ProjectionMethod, ProjectionOptions, ProjectionReport,
-};
+use super::projection::{Lengths, Projection, ProjectionMethod, ProjectionReport};
+use super::self_collision::SelfCollision;
+use super::setup::{BurningSetup, Surroundings};
+use super::state::BurningState;
 use super::surface::RenderSurface;
 use crate::Vec3;
 use crate::solve::NotPositiveDefinite;
@@ -30,59 +29,6 @@ use crate::solve::NotPositiveDefinite;
 const MAX_PARTS: usize = 50;
 /// A particle this close to a body, as a share of the thickness, touches it.
 const TOUCHING: f64 = 0.01;
-
-/// What a burning shell is made of.
-#[derive(Clone, Debug)]
-pub struct BurningSetup {
-    /// Particles and springs.
-    pub shell: DoubleLayer,
-    /// Mass of a unit of area [kg/m²].
-    pub area_density: f64,
-    /// Temperature at the start [K].
-    pub temperature: f64,
-    /// Temperature around [K].
-    pub ambient_temperature: f64,
-    /// Rate of cooling towards it [1/s].
-    pub cooling_rate: f64,
-    /// Thermal diffusivity [m²/s].
-    pub diffusivity: f64,
-    /// Factors on the diffusivity by particle; empty: 1.
-    pub diffusivity_factors: Vec<f64>,
-    /// How it burns.
-    pub burning: BurningOptions,
-    /// Factors on the rate of mass loss by particle; empty: 1.
-    pub loss_factors: Vec<f64>,
-    /// How springs are projected.
-    pub projection: ProjectionOptions,
-    /// Rate at which motion is damped [1/s].
-    pub damping: f64,
-}
-
-/// What acts on a shell at a time.
-#[derive(Clone, Debug, Default)]
-pub struct Surroundings {
-    /// Gravitational acceleration [m/s²].
-    pub gravity: Vec3,
-    /// Sources of heat.
-    pub sources: Vec<HeatSource>,
-    /// Bodies.
-    pub colliders: Vec<Collider>,
-    /// Corner particles that are held, and where [m].
-    pub held: Vec<(u32, Vec3)>,
-}
-
-/// What a shell owes to its past: all that a step changes and the next one needs.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BurningState {
-    /// Positions of the particles [m].
-    pub positions: Vec<Vec3>,
-    /// Velocities of the particles [m/s].
-    pub velocities: Vec<Vec3>,
-    /// Temperatures of the particles [K].
-    pub temperatures: Vec<f64>,
-    /// Masses of the particles over their initial masses.
-    pub mass_ratios: Vec<f64>,
-}
 
 /// What a step took.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -95,6 +41,8 @@ pub struct BurningReport {
     pub gradient_iterations: usize,
     /// Parts in which not all springs had their lengths at the end.
     pub unmet: usize,
+    /// Corners whose motion was shortened, so that the surface does not cross itself, summed over the parts.
+    pub held_back: usize,
     /// Wall time [s] of heat, mass loss and cutting, and motion.
     pub seconds: [f64; 3],
 }
@@ -106,6 +54,7 @@ impl BurningReport {
         self.sweeps += other.sweeps;
         self.gradient_iterations += other.gradient_iterations;
         self.unmet += other.unmet;
+        self.held_back += other.held_back;
         for (seconds, more) in self.seconds.iter_mut().zip(other.seconds) {
             *seconds += more;
         }
@@ -116,7 +65,7 @@ impl BurningReport {
 pub struct BurningShell {
     pub(super) setup: BurningSetup,
     pub(super) state: BurningState,
-    masses: Vec<f64>,
+    pub(super) masses: Vec<f64>,
     diffusivity: Vec<f64>,
     mobility: Vec<f64>,
     mobility_in_matrix: Vec<f64>,
@@ -128,6 +77,9 @@ pub struct BurningShell {
     projection: Projection,
     /// In place of the projection, where that is asked for.
     global: Option<GlobalSolve>,
+    self_collision: Option<SelfCollision>,
+    /// Longest stable step of springs by Hooke's law [s]; infinite for projections.
+    longest_step: f64,
     trial: Vec<Vec3>,
     clearance: f64,
     /// Of the whole render mesh at rest [m²].
@@ -169,6 +121,9 @@ impl BurningShell {
             projection: Projection::new(&shell.springs, n),
             global: (setup.projection.method == ProjectionMethod::Global)
                 .then(|| GlobalSolve::new(shell)),
+            self_collision: (setup.self_collision)
+                .map(|options| SelfCollision::new(shell, options)),
+            longest_step: mass_spring::longest_step(&setup),
             trial: vec![Vec3::zeros(); n],
             clearance: shell.half_diagonal(),
             initial_area: RenderSurface::new(&shell.mesh).area(shell, &shell.particles),
@@ -203,7 +158,8 @@ impl BurningShell {
             &self.state.mass_ratios,
         );
         let parts = (fastest * dt / burning.largest_change).ceil();
-        let parts = (parts as usize).clamp(1, MAX_PARTS);
+        let stable = (dt / self.longest_step).ceil() as usize;
+        let parts = (parts as usize).clamp(1, MAX_PARTS).max(stable);
         let mut report = BurningReport {
             parts,
             ..BurningReport::default()
@@ -230,13 +186,13 @@ impl BurningShell {
         report: &mut BurningReport,
     ) -> Result<(), NotPositiveDefinite> {
         let mut clock = Instant::now();
-        let mut lap = |part: usize| {
+        let mut lap = |report: &mut BurningReport, part: usize| {
             let now = Instant::now();
             report.seconds[part] += (now - clock).as_secs_f64();
             clock = now;
         };
         self.warm(dt, surroundings);
-        lap(0);
+        lap(report, 0);
         let (setup, state) = (&self.setup, &mut self.state);
         (setup.burning).burn(
             dt,
@@ -245,12 +201,9 @@ impl BurningShell {
             &mut state.mass_ratios,
         );
         self.shrink_and_cut();
-        lap(1);
-        let taken = self.move_particles(dt, 1.0 / report.parts as f64, surroundings)?;
-        report.sweeps += taken.sweeps;
-        report.gradient_iterations += taken.gradient_iterations;
-        report.unmet += usize::from(!taken.converged);
-        lap(2);
+        lap(report, 1);
+        self.move_particles(dt, surroundings, report)?;
+        lap(report, 2);
         Ok(())
     }
 
@@ -269,7 +222,7 @@ impl BurningShell {
     }
 
     /// Target lengths, the surface, springs and particles by the masses that are left.
-    fn shrink_and_cut(&mut self) {
+    pub(super) fn shrink_and_cut(&mut self) {
         let (burning, ratios) = (&self.setup.burning, &self.state.mass_ratios);
         for (targets, springs) in self.targets.iter_mut().zip(&self.setup.shell.springs) {
             burning.set_targets(&springs.ends, &springs.initial_lengths, ratios, targets);
@@ -281,17 +234,48 @@ impl BurningShell {
             .update(&self.setup.shell, &self.is_triangle_there);
     }
 
-    /// `share` is that of `dt` in the step: so much of a step's friction is taken.
     fn move_particles(
         &mut self,
         dt: f64,
-        share: f64,
         surroundings: &Surroundings,
-    ) -> Result<ProjectionReport, NotPositiveDefinite> {
+        report: &mut BurningReport,
+    ) -> Result<(), NotPositiveDefinite> {
+        // So much of a step's friction is taken.
+        let share = 1.0 / report.parts as f64;
         self.set_mobility(&surroundings.held);
-        let state = &mut self.state;
+        self.fall(dt, surroundings);
+        let colliders = surroundings.colliders.iter().map(|collider| Collider {
+            friction: 1.0 - (1.0 - collider.friction).powf(share),
+            ..collider.with_clearance(self.clearance)
+        });
+        let colliders: Vec<Collider> = colliders.collect();
+        if let Some(collision) = &mut self.self_collision {
+            let start = &self.state.positions;
+            let (burning, ratios) = (&self.setup.burning, &self.state.mass_ratios);
+            let shrinkage = |corner: usize| burning.length_factor(ratios[corner]);
+            let is_there = &self.is_triangle_there;
+            collision.begin(start, &self.trial, share, is_there, shrinkage);
+        }
+        let taken = self.bring_to_lengths(dt, &colliders)?;
+        report.sweeps += taken.sweeps;
+        report.gradient_iterations += taken.gradient_iterations;
+        report.unmet += usize::from(!taken.converged);
+        let (start, mobility) = (&self.state.positions, &self.mobility);
+        if let Some(collision) = &mut self.self_collision {
+            collision.rub(start, &mut self.trial, mobility, share);
+            // What is rubbed goes along the other part, and perhaps into a body.
+            (colliders.iter()).for_each(|collider| collider.push_out(&mut self.trial, mobility));
+            report.held_back += collision.hold_back(start, &mut self.trial, mobility);
+        }
+        self.take_up_trial(dt, &colliders);
+        Ok(())
+    }
+
+    /// Free motion, into `trial`.
+    fn fall(&mut self, dt: f64, surroundings: &Surroundings) {
+        let state = &self.state;
         self.trial.copy_from_slice(&state.positions);
-        let slowed = 1.0 / (1.0 + dt * self.setup.damping);
+        let slowed = self.slowed(dt);
         for ((x, velocity), &mobility) in self
             .trial
             .iter_mut()
@@ -305,42 +289,70 @@ impl BurningShell {
         for &(particle, place) in &surroundings.held {
             self.trial[particle as usize] = place;
         }
-        let colliders = surroundings.colliders.iter();
-        let colliders = colliders.map(|collider| Collider {
-            friction: 1.0 - (1.0 - collider.friction).powf(share),
-            ..collider.with_clearance(self.clearance)
-        });
-        let mobility = &self.mobility;
-        let in_matrix = match self.setup.projection.held_ends_count {
-            true => &self.mobility_in_matrix,
-            false => mobility,
-        };
+    }
+
+    /// What damping leaves of a velocity after `dt` [s].
+    fn slowed(&self, dt: f64) -> f64 {
+        1.0 / (1.0 + dt * self.setup.damping)
+    }
+
+    /// What springs and bodies make of `trial`.
+    fn bring_to_lengths(
+        &mut self,
+        dt: f64,
+        colliders: &[Collider],
+    ) -> Result<ProjectionReport, NotPositiveDefinite> {
+        let (mobility, options) = (&self.mobility, &self.setup.projection);
         let lengths = Lengths {
             targets: &self.targets,
             is_there: &self.remaining.springs,
         };
-        let options = &self.setup.projection;
+        let (collision, start) = (&self.self_collision, &self.state.positions);
         let correct = |x: &mut [Vec3]| {
-            (colliders.clone()).for_each(|collider| collider.push_out(x, mobility));
-        };
-        let taken = match &mut self.global {
-            None => {
-                let mobility = Mobility {
-                    in_matrix,
-                    in_move: mobility,
-                };
-                (self.projection).project(&mut self.trial, lengths, mobility, options, correct)
+            if let Some(collision) = collision {
+                collision.push_apart(start, x, mobility);
             }
-            Some(global) => {
+            (colliders.iter()).for_each(|collider| collider.push_out(x, mobility));
+        };
+        let slowed = self.slowed(dt);
+        let trial = &mut self.trial;
+        match (options.method, &mut self.global) {
+            (ProjectionMethod::MassSpring, _) => {
+                let shell = &self.setup.shell;
+                let stiffness = dt * dt * slowed * options.stiffness;
+                mass_spring::pull(shell, start, trial, lengths, mobility, stiffness);
+                correct(trial);
+                Ok(ProjectionReport {
+                    converged: true,
+                    ..ProjectionReport::default()
+                })
+            }
+            (_, Some(global)) => {
                 let limits = GlobalLimits {
                     compliance: options.compliance,
                     dt,
                     iterations: options.sweeps,
                     tolerance: options.tolerance,
                 };
-                global.project(&mut self.trial, lengths, mobility, limits, correct)?
+                global.project(trial, lengths, mobility, limits, correct)
             }
-        };
+            _ => {
+                let in_matrix = match options.held_ends_count {
+                    true => &self.mobility_in_matrix,
+                    false => mobility,
+                };
+                let mobility = Mobility {
+                    in_matrix,
+                    in_move: mobility,
+                };
+                Ok((self.projection).project(trial, lengths, mobility, options, correct))
+            }
+        }
+    }
+
+    /// Makes `trial` the state; bodies take from velocities.
+    fn take_up_trial(&mut self, dt: f64, colliders: &[Collider]) {
+        let state = &mut self.state;
         for ((x, velocity), moved) in state
             .positions
             .iter_mut()
@@ -351,10 +363,10 @@ impl BurningShell {
             *x = *moved;
         }
         let touching = TOUCHING * self.setup.shell.thickness;
-        for collider in colliders.clone() {
-            collider.slow(&state.positions, mobility, touching, &mut state.velocities);
+        for collider in colliders {
+            let velocities = &mut state.velocities;
+            collider.slow(&state.positions, &self.mobility, touching, velocities);
         }
-        Ok(taken)
     }
 
     /// Inverse masses [1/kg], 0 of particles that are held or gone.
@@ -387,111 +399,6 @@ impl BurningShell {
     /// The surface that is left.
     pub fn surface(&self) -> &RenderSurface {
         &self.surface
-    }
-
-    /// Takes up a state that a shell of the same setup had.
-    ///
-    /// # Errors
-    /// Lists of other lengths, or values that no shell has; the shell is then as it was.
-    pub fn restore(&mut self, state: &BurningState) -> Result<(), String> {
-        let n = self.masses.len();
-        let lengths = [
-            state.positions.len(),
-            state.velocities.len(),
-            state.temperatures.len(),
-            state.mass_ratios.len(),
-        ];
-        if lengths.iter().any(|&length| length != n) {
-            return Err(format!(
-                "a double layer of {n} particles has values of {lengths:?}"
-            ));
-        }
-        let vectors = state.positions.iter().chain(&state.velocities);
-        let mut numbers = vectors.flat_map(|v| v.iter()).chain(&state.temperatures);
-        if numbers.any(|value| !value.is_finite()) {
-            return Err("a value of a double layer is not finite".to_owned());
-        }
-        if state
-            .mass_ratios
-            .iter()
-            .any(|ratio| !(*ratio > 0.0 && *ratio <= 1.0))
-        {
-            return Err(
-                "a mass of a double layer is not between 0 and its initial mass".to_owned(),
-            );
-        }
-        self.put_back(state);
-        Ok(())
-    }
-
-    /// Takes up a state that this shell had.
-    pub(crate) fn put_back(&mut self, state: &BurningState) {
-        self.state.clone_from(state);
-        self.shrink_and_cut();
-    }
-}
-
-impl BurningState {
-    /// The first particle with a value that is not finite.
-    fn first_not_finite(&self) -> Option<usize> {
-        let is_finite = |v: &Vec3| v.iter().all(|value| value.is_finite());
-        (0..self.positions.len()).find(|&p| {
-            !(is_finite(&self.positions[p])
-                && is_finite(&self.velocities[p])
-                && self.temperatures[p].is_finite())
-        })
-    }
-}
-
-impl BurningShell {
-    /// Checks the numbers of a setup.
-    ///
-    /// # Errors
-    /// A number out of its range, by the name that scenes give it.
-    pub fn check(setup: &BurningSetup) -> Result<(), BurningError> {
-        positive("thickness", setup.shell.thickness)?;
-        positive("area_density", setup.area_density)?;
-        not_negative("temperature", setup.temperature)?;
-        not_negative("ambient_temperature", setup.ambient_temperature)?;
-        not_negative("cooling_rate", setup.cooling_rate)?;
-        not_negative("diffusivity", setup.diffusivity)?;
-        not_negative("damping", setup.damping)?;
-        positive("compliance", setup.projection.compliance)?;
-        not_negative("tolerance", setup.projection.tolerance)?;
-        setup.burning.check()?;
-        // Inverse masses, lengths and stiffnesses have to be numbers that can be squared.
-        within(
-            "area_density",
-            setup.area_density,
-            [1e-9, 1e9],
-            "from 1e-9 to 1e9",
-        )?;
-        within(
-            "compliance",
-            setup.projection.compliance,
-            [1e-30, 1e30],
-            "from 1e-30 to 1e30",
-        )?;
-        for springs in &setup.shell.springs {
-            let lengths = &springs.initial_lengths;
-            let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
-            // Written so that what is not a number is refused.
-            if !lengths
-                .iter()
-                .all(|&length| length.is_finite() && length > 1e-6 * mean)
-            {
-                return Err(BurningError::Value {
-                    what: "thickness",
-                    value: setup.shell.thickness,
-                    expected: "such that no two particles of the layers stand at one place",
-                });
-            }
-        }
-        setup
-            .projection
-            .weights
-            .iter()
-            .try_for_each(|&weight| share("weights", weight))
     }
 }
 

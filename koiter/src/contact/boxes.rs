@@ -35,8 +35,9 @@ impl Aabb {
         out
     }
 
+    /// The smallest box around both.
     #[inline]
-    pub(super) fn union(&self, other: &Self) -> Self {
+    pub fn union(&self, other: &Self) -> Self {
         Self {
             low: std::array::from_fn(|k| self.low[k].min(other.low[k])),
             high: std::array::from_fn(|k| self.high[k].max(other.high[k])),

@@ -152,6 +152,7 @@ impl Simulation {
                 // A projection that stops at its number of sweeps is the method, not a failure of the step.
                 measures.push(("burning_parts", total.parts as f64));
                 measures.push(("unmet_parts", total.unmet as f64));
+                measures.push(("held_back", total.held_back as f64));
                 measures
             },
             seconds: vec![("heat", heat), ("mass_loss", mass_loss), ("motion", motion)],
@@ -179,6 +180,7 @@ impl Simulation {
             ("pieces", all.iter().map(|m| m.pieces as f64).sum()),
             ("highest_temperature", largest(|m| m.highest_temperature)),
             ("mean_strain", largest(|m| m.mean_strain)),
+            ("mean_blue_strain", largest(|m| m.mean_blue_strain)),
             ("fold_angle", largest(|m| m.fold_angle)),
         ]
     }

@@ -46,6 +46,7 @@ pub use discrete_shells::DiscreteShellsSpec;
 pub(in crate::scene) use double_layer::ROOM_TEMPERATURE;
 pub use double_layer::{
     BurningSpec, DoubleLayerSpec, HeatSourceSpec, ProjectionSpec, QuadGridSpec, QuadMeshSpec,
+    SelfCollisionSpec,
 };
 pub use energy::{EnergySpec, ParameterSpec};
 pub use load::{EdgeChoice, LoadSpec};

@@ -7,6 +7,7 @@
 use koiter::Vec3;
 use koiter::scene::{NoFiles, Scene, SceneFile, Simulation};
 
+use crate::bench::gates::{Gate, Gates};
 use crate::bench::table::{Cell, Table};
 use crate::failure::Failure;
 
@@ -18,7 +19,7 @@ const CELLS: usize = 40;
 /// A quasi-static strip under a lamp, held so that it can shrink and curl.
 const STRIP: &str = include_str!("../../../../benchmarks/burning-strip/strip.toml");
 
-pub(super) fn table() -> Result<Table, Failure> {
+pub(super) fn table(gates: &mut Gates) -> Result<Table, Failure> {
     let mut table = Table::new(
         "strip, 20 x 1 x 1 mm, heated from above",
         &[
@@ -30,10 +31,12 @@ pub(super) fn table() -> Result<Table, Failure> {
             ("error_percent", "error [%]"),
         ],
     );
+    let mut worst: f64 = 0.0;
     for bending in ["bac", "dkt", "ds-theta", "me-average"] {
         for kelvin in [700, 900] {
             let (ratio, curvature) = curl(bending, kelvin)?;
             let expected = (1.0 - ratio) / (ratio * THICKNESS);
+            worst = worst.max((curvature / expected - 1.0).abs());
             table.push([
                 bending.into(),
                 kelvin.into(),
@@ -44,6 +47,8 @@ pub(super) fn table() -> Result<Table, Failure> {
             ]);
         }
     }
+    let figure = "largest error of a curvature";
+    gates.check("strips", figure, "%", 100.0 * worst, Gate::Below(3.0));
     Ok(table)
 }
 

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use koiter::Vec3;
 
-use super::gates::{Gate, Gates};
 use super::run::{Trace, keep, nearest, shipped};
+use crate::bench::gates::{Gate, Gates};
 use crate::bench::published::rows;
 use crate::failure::Failure;
 

@@ -5,8 +5,8 @@ use koiter::Vec3;
 use koiter::integrate::StepError;
 use koiter::scene::{Scene, Simulation};
 
-use super::gates::{Gate, Gates};
 use super::run::{Trace, keep, shipped, written};
+use crate::bench::gates::{Gate, Gates};
 use crate::failure::Failure;
 
 /// Of what is conserved exactly: round-off of some ten thousand steps.

@@ -5,8 +5,8 @@
 
 use koiter::Vec3;
 
-use super::gates::{Gate, Gates};
 use super::run::{Trace, energy, keep, shipped};
+use crate::bench::gates::{Gate, Gates};
 use crate::bench::published::rows;
 use crate::failure::Failure;
 

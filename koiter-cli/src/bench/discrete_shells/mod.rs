@@ -3,18 +3,17 @@
 
 mod beams;
 mod conservation;
-mod gates;
 mod hats;
 mod paper;
 mod run;
 
+use super::gates::Gates;
 use super::table::Table;
 use crate::arguments::{DiscreteShellsArguments, DiscreteShellsCase};
 use crate::failure::Failure;
-use gates::Gates;
 
 pub(super) fn bench(options: &DiscreteShellsArguments) -> Result<Table, Failure> {
-    let mut gates = Gates::new();
+    let mut gates = Gates::new("Discrete Shells");
     for case in &options.cases {
         match case {
             DiscreteShellsCase::Conservation => conservation::check(&mut gates)?,

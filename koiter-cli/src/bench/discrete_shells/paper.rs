@@ -6,8 +6,8 @@ use koiter::scene::Scene;
 use koiter::scene::model::ProcessKind;
 use nalgebra::{Matrix3, Vector3};
 
-use super::gates::{Gate, Gates};
 use super::run::{Trace, energy, shipped};
+use crate::bench::gates::{Gate, Gates};
 use crate::bench::published::{number, rows};
 use crate::failure::Failure;
 
@@ -293,7 +293,7 @@ mod tests {
 
     #[test]
     fn the_sheet_curls_and_creases_as_in_the_reference() {
-        let mut gates = Gates::new();
+        let mut gates = Gates::new("Discrete Shells");
         check(&mut gates).unwrap();
         let failures = &gates.table.failures;
         assert!(failures.is_empty(), "{failures:?}");

@@ -2,6 +2,7 @@ use super::*;
 use crate::burning::collisions::ColliderShape;
 use crate::burning::measures::BurningMeasures;
 use crate::burning::quad_mesh::QuadMesh;
+use crate::burning::{BurningOptions, DoubleLayer, HeatSource, ProjectionOptions};
 
 fn setup(mesh: QuadMesh, thickness: f64) -> BurningSetup {
     BurningSetup {
@@ -18,6 +19,7 @@ fn setup(mesh: QuadMesh, thickness: f64) -> BurningSetup {
             sweeps: 4,
             ..ProjectionOptions::default()
         },
+        self_collision: None,
         damping: 0.0,
     }
 }

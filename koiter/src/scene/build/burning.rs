@@ -4,7 +4,7 @@ use super::{Builder, mesh_error, move_point};
 use crate::Vec3;
 use crate::burning::{
     BurningError, BurningOptions, BurningSetup, BurningShell, DoubleLayer, ProjectionOptions,
-    QuadMesh, QuadMeshError, Side, Texture,
+    QuadMesh, QuadMeshError, SelfCollisionOptions, Side, Texture,
 };
 use crate::mesh::{Surface, SurfaceOptions};
 use crate::scene::burning::{DoubleLayerPart, HeatSourcePart, Held};
@@ -80,6 +80,7 @@ impl Builder<'_> {
             projection: ProjectionOptions {
                 method: spec.projection.method,
                 compliance: spec.projection.compliance,
+                stiffness: spec.projection.stiffness,
                 sweeps: spec.projection.sweeps,
                 tolerance: spec.projection.tolerance,
                 gradient_iterations: spec.projection.iterations,
@@ -87,6 +88,10 @@ impl Builder<'_> {
                 weights: spec.projection.weights,
                 ..ProjectionOptions::default()
             },
+            self_collision: (spec.self_collision.as_ref()).map(|own| SelfCollisionOptions {
+                distance: own.distance.unwrap_or(spec.thickness),
+                friction: own.friction,
+            }),
             damping: spec.damping,
             shell,
         };
@@ -225,9 +230,13 @@ pub(super) fn number_error(error: &BurningError, path: &str) -> SceneError {
     let key = match error {
         BurningError::Value { what, .. } => match *what {
             "thickness" | "area_density" | "temperature" | "damping" => format!("{path}.{what}"),
-            "tolerance" | "weights" | "compliance" => format!("{path}.projection.{what}"),
+            "tolerance" | "weights" | "compliance" | "stiffness" => {
+                format!("{path}.projection.{what}")
+            }
+            "distance" | "friction" => format!("{path}.self_collision.{what}"),
             _ => format!("{path}.burning.{what}"),
         },
+        BurningError::CrossesItself { .. } => format!("{path}.mesh"),
         _ => path.to_owned(),
     };
     SceneError::new(Kind::OutOfRange, error.to_string()).inside(&key)

@@ -31,6 +31,22 @@ pub struct DoubleLayerSpec {
     /// How the springs keep their lengths.
     #[serde(default)]
     pub projection: ProjectionSpec,
+    /// How it keeps out of itself; default: it may pass through itself.
+    #[serde(default)]
+    pub self_collision: Option<SelfCollisionSpec>,
+}
+
+/// `[double_layer.self_collision]`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SelfCollisionSpec {
+    /// How far apart the surface is kept from itself [m], or half the height of its triangles where that is less; default: the
+    /// thickness.
+    #[serde(default)]
+    pub distance: Option<f64>,
+    /// Share of the motion along each other that touching parts lose in a step, 0 to 1.
+    #[serde(default)]
+    pub friction: f64,
 }
 
 /// A mesh of quads: exactly one of `file`, `grid` and `torus`, then scaled, turned and moved.
@@ -144,10 +160,12 @@ impl Default for BurningSpec {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ProjectionSpec {
-    /// Colour after colour, or all springs at once.
+    /// Colour after colour, all springs at once, or springs by Hooke's law.
     pub method: ProjectionMethod,
     /// Compliance of a spring in the global method [m/N].
     pub compliance: f64,
+    /// Stiffness of a spring of the method of masses and springs [N/m].
+    pub stiffness: f64,
     /// Most sweeps over all springs in a step, or iterations of the global method.
     pub sweeps: usize,
     /// Sweeps end when every spring has its length up to this share.
@@ -166,6 +184,7 @@ impl Default for ProjectionSpec {
         Self {
             method: options.method,
             compliance: options.compliance,
+            stiffness: options.stiffness,
             sweeps: options.sweeps,
             tolerance: options.tolerance,
             iterations: options.gradient_iterations,

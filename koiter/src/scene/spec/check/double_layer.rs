@@ -114,19 +114,7 @@ fn check_layer(path: &str, layer: &DoubleLayerSpec) -> Checked {
             ));
         }
     }
-    let (projection, usual) = (&layer.projection, ProjectionSpec::default());
-    for (key, given) in [
-        ("weights", projection.weights != usual.weights),
-        ("iterations", projection.iterations != usual.iterations),
-    ] {
-        if given && projection.method == ProjectionMethod::Global {
-            let message = format!(
-                "'{key}' is a number of successive sweeps: the global method has a 'compliance', and solves directly"
-            );
-            let path = format!("{path}.projection.{key}");
-            return Err(error(Kind::Conflict, &path, message));
-        }
-    }
+    check_method(path, &layer.projection)?;
     for (key, given) in [
         ("exchange_rate", layer.burning.exchange_rate.is_some()),
         ("strength", layer.burning.strength.is_some()),
@@ -142,6 +130,56 @@ fn check_layer(path: &str, layer: &DoubleLayerSpec) -> Checked {
         layer.projection.longest_move,
         "",
     )
+}
+
+/// Numbers that the chosen way does not read are refused.
+fn check_method(path: &str, projection: &ProjectionSpec) -> Checked {
+    let usual = ProjectionSpec::default();
+    let changed = [
+        ("weights", projection.weights != usual.weights),
+        ("iterations", projection.iterations != usual.iterations),
+        ("sweeps", projection.sweeps != usual.sweeps),
+        ("tolerance", projection.tolerance != usual.tolerance),
+        (
+            "longest_move",
+            projection.longest_move != usual.longest_move,
+        ),
+        ("compliance", projection.compliance != usual.compliance),
+        ("stiffness", projection.stiffness != usual.stiffness),
+    ];
+    let (method, unread, help): (_, &[&str], _) = match projection.method {
+        ProjectionMethod::Successive => (
+            "successive",
+            &["stiffness"],
+            "how stiff successive sweeps are follows from their number and their 'weights'",
+        ),
+        ProjectionMethod::Global => (
+            "global",
+            &["weights", "iterations", "stiffness"],
+            "the global method has a 'compliance', and solves directly",
+        ),
+        ProjectionMethod::MassSpring => (
+            "mass-spring",
+            &[
+                "weights",
+                "iterations",
+                "sweeps",
+                "tolerance",
+                "longest_move",
+                "compliance",
+            ],
+            "springs by Hooke's law have a 'stiffness' and are not projected",
+        ),
+    };
+    let wrong = changed.iter().find(|(key, is)| *is && unread.contains(key));
+    match wrong {
+        None => Ok(()),
+        Some((key, _)) => {
+            let message = format!("the method \"{method}\" has no '{key}'");
+            let path = format!("{path}.projection.{key}");
+            Err(error(Kind::Conflict, &path, message).with_help(help))
+        }
+    }
 }
 
 fn check_source(path: &str, source: &HeatSourceSpec) -> Checked {

@@ -1,6 +1,6 @@
 //! Figures beside what they are to be.
 
-use crate::bench::table::{Cell, Table};
+use super::table::{Cell, Table};
 
 /// What a figure is to be.
 #[derive(Clone, Copy, Debug)]
@@ -62,10 +62,10 @@ pub(super) struct Gates {
 }
 
 impl Gates {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(title: &'static str) -> Self {
         Self {
             table: Table::new(
-                "Discrete Shells",
+                title,
                 &[
                     ("case", "case"),
                     ("figure", "figure"),
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn what_is_outside_is_told_and_what_is_not_a_number_is_outside() {
-        let mut gates = Gates::new();
+        let mut gates = Gates::new("figures");
         gates.check("case", "fine", "m", 1.01, Gate::Near(1.0, 0.02));
         gates.check("case", "fine too", "m", 7.0, Gate::Between(6.0, 8.0));
         gates.check("case", "told", "m", 1e9, Gate::Beside(1.0));
