@@ -74,7 +74,7 @@ fn competition() -> Vec<[f64; 2]> {
         in_matrix: &[1.0; 3],
         in_move: &[0.0, 1.0, 0.0],
     };
-    let mut step = |_| {
+    let step = |_| {
         let mut after = [0.0; 2];
         for (after, (projection, targets)) in after.iter_mut().zip(&mut colors) {
             let lengths = Lengths {
@@ -86,7 +86,7 @@ fn competition() -> Vec<[f64; 2]> {
         }
         after
     };
-    PUBLISHED.map(|row| step(row)).to_vec()
+    PUBLISHED.map(step).to_vec()
 }
 
 /// Sums of the errors of all colours over seven sweeps, after lengths changed at once.
