@@ -35,6 +35,11 @@ pub(crate) fn modes(arguments: &ModesArguments) -> Result<(), Failure> {
         output_path::make_folder(folder)?;
     }
     let loaded = load(&arguments.scene)?;
+    if loaded.scene.model.shells.is_empty() {
+        let message = "the scene has no [[shell]], and modes are those of elastic shells";
+        return Err(Failure::input(message)
+            .with_help("Bézier shells and double layers are stepped, not linearised as a whole"));
+    }
     let mut simulation = start(&loaded.scene.model, None)?;
     let count = arguments.count.min(simulation.masses().len());
     let found: Vec<Found> = if arguments.buckling {

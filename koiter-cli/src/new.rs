@@ -70,6 +70,7 @@ fn files(template: Template, scene: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, Fa
         Template::Drape => include_str!("../templates/drape.toml"),
         Template::Cantilever => include_str!("../templates/cantilever.toml"),
         Template::Mesh => include_str!("../templates/mesh.toml"),
+        Template::Incision => include_str!("../templates/incision.toml"),
     };
     let mut files = vec![(scene.to_owned(), text.as_bytes().to_vec())];
     if template == Template::Mesh {
@@ -101,6 +102,7 @@ fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::ValueEnum;
     use koiter::scene::{NoFiles, Scene, SceneFile};
     use serde_json::Value;
 
@@ -124,7 +126,7 @@ mod tests {
 
     #[test]
     fn templates_are_sound_with_and_without_the_keys_that_are_not_set() {
-        for template in [Template::Drape, Template::Cantilever, Template::Mesh] {
+        for template in Template::value_variants().iter().copied() {
             for text in [text_of(template), with_all_keys(&text_of(template))] {
                 let file = SceneFile::parse("template", &text, &[]).unwrap();
                 if template != Template::Mesh {

@@ -123,7 +123,7 @@ fn every_verb_that_prints_figures_prints_one_json_object() {
 #[test]
 fn a_new_scene_runs_at_once_and_nothing_is_overwritten() {
     let folder = tempfile::tempdir().unwrap();
-    for template in ["drape", "cantilever", "mesh"] {
+    for template in ["drape", "cantilever", "mesh", "incision"] {
         let scene = path(folder.path(), template);
         let text = done(&["new", &scene, "--template", template]);
         assert!(text.contains(&format!("koiter run {scene}")), "{text}");

@@ -11,6 +11,7 @@ Examples:
   koiter new flag                          flag/scene.toml: a cloth falls on a ball
   koiter new bridge --template cantilever  a clamped strip, static
   koiter new shirt --template mesh         a mesh from a file, with one to start from
+  koiter new vessel --template incision    a tube is cut open and patched
   koiter new tests/one.toml                a single file
 
 Nothing that is there is overwritten.")]
@@ -35,6 +36,8 @@ pub(crate) enum Template {
     Cantilever,
     /// A mesh from a file falls over a pole
     Mesh,
+    /// A soft tube is cut open and patched: Bézier shells
+    Incision,
 }
 
 impl Template {
@@ -43,6 +46,7 @@ impl Template {
             Self::Drape => "drape",
             Self::Cantilever => "cantilever",
             Self::Mesh => "mesh",
+            Self::Incision => "incision",
         }
     }
 }

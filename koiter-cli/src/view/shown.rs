@@ -387,7 +387,7 @@ fn written(folder: &Path) -> Option<SystemTime> {
 fn refuse_changing_faces(reader: &ResultReader) -> Result<(), Failure> {
     match reader.frame(0) {
         Ok(frame) if frame.topology.is_some() => {
-            let message = "faces burn away from frame to frame, which the viewer cannot show";
+            let message = "faces change from frame to frame (burnt, cut or sewn), which the viewer cannot show";
             Err(Failure::input(message).with_help(
                 "koiter render makes pictures and films of it, koiter export --to vtu a series for ParaView",
             ))

@@ -159,6 +159,26 @@ impl Change {
         Supports::of(held)
     }
 
+    /// The nodes at the cut or the seam, and their neighbours.
+    pub fn near(&self) -> Vec<bool> {
+        let nodes = self.origins.len();
+        let mut counts = vec![0; nodes];
+        self.present
+            .iter()
+            .for_each(|now| counts[*now as usize] += 1);
+        let mut at_change: Vec<bool> = counts.into_iter().map(|count| count > 1).collect();
+        for v in self.seam.iter().flatten() {
+            at_change[*v as usize] = true;
+        }
+        let mut near = vec![false; nodes];
+        for face in self.shell.mesh().faces() {
+            if face.iter().any(|v| at_change[*v as usize]) {
+                face.iter().for_each(|v| near[*v as usize] = true);
+            }
+        }
+        near
+    }
+
     /// The parts of every old element, by its number.
     fn parts(&self, old_elements: usize) -> Vec<Vec<usize>> {
         let mut parts = vec![Vec::new(); old_elements];

@@ -32,12 +32,13 @@
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, UnitQuaternion, Vector2};
 
 use super::andes::membrane_stiffness;
+use super::collapse::Collapse;
 use super::control_points::{CentralPoint, rest_levers};
 use super::discrete_kirchhoff::bending_stiffness;
 use super::frame::{Frame, FrameRule, rotation_angle};
 use super::rotation::{cross_matrix, log_derivative, rotation_vector};
 use super::stiffness::{Attachment, FlatTriangle, Stiffness, centre_gradients, cubic_stiffness};
-use super::{BezierError, Section};
+use super::{BezierError, Section, Tangent};
 use crate::Vec3;
 
 /// Numbers over the unknowns of an element: (force, moment) or (displacement, rotation) of each corner.
@@ -111,42 +112,13 @@ pub struct RestElement {
 pub struct Element {
     triangle: FlatTriangle,
     stiffness: Stiffness,
+    collapse: Collapse,
     rule: FrameRule,
     /// Rest axes as they hang on each node.
     axes: [Matrix3<f64>; 3],
     /// Levers as they hang on each node [m].
     levers: [[Vec3; 3]; 3],
     centre: [(Vector2<f64>, Matrix2<f64>); 3],
-}
-
-/// Which derivative of the forces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Tangent {
-    /// `E K Eᵀ`: never indefinite.
-    Corotated,
-    /// So much of the consistent tangent, the rest the corotated one.
-    Share(f64),
-    /// With the stiffness of the forces as they turn: Newton's method converges quadratically, nearly.
-    Consistent,
-}
-
-impl Tangent {
-    /// How much of it is the consistent tangent.
-    pub(super) fn share(self) -> f64 {
-        match self {
-            Self::Corotated => 0.0,
-            Self::Share(share) => share,
-            Self::Consistent => 1.0,
-        }
-    }
-
-    pub(super) fn of_share(share: f64) -> Self {
-        match share {
-            0.0 => Self::Corotated,
-            1.0 => Self::Consistent,
-            share => Self::Share(share),
-        }
-    }
 }
 
 /// Energy and its derivatives, in world axes.
@@ -166,6 +138,8 @@ struct Placed {
     /// K d.
     forces: ElementVector,
     log_derivatives: [Matrix3<f64>; 3],
+    /// What the barrier of its area adds to gradient and stiffness.
+    resistance: Option<(ElementVector, Stiffness)>,
 }
 
 fn part(vector: &ElementVector, first: usize) -> Vec3 {
@@ -208,6 +182,7 @@ impl Element {
             }
         };
         Ok(Self {
+            collapse: Collapse::new(&triangle, section),
             triangle,
             stiffness,
             rule,
@@ -262,13 +237,14 @@ impl Element {
     /// Energy and gradient; `None` if the element has collapsed.
     pub fn state(&self, x: &[Vec3; 3], turns: &[UnitQuaternion<f64>; 3]) -> Option<ElementState> {
         let placed = self.place(x, turns)?;
-        Some(placed.state())
+        Some(self.state_of(&placed))
     }
 
     /// The energy [J]; `None` if the element has collapsed.
     pub fn energy(&self, x: &[Vec3; 3], turns: &[UnitQuaternion<f64>; 3]) -> Option<f64> {
-        let (_, deformation) = self.deform(x, turns)?;
-        Some(0.5 * deformation.dot(&(self.stiffness * deformation)))
+        let (frame, deformation) = self.deform(x, turns)?;
+        let elastic = 0.5 * deformation.dot(&(self.stiffness * deformation));
+        Some(elastic + self.collapse.value(&frame.corners))
     }
 
     /// Energy, gradient and second derivatives in world axes; `None` if the element has collapsed.
@@ -286,6 +262,9 @@ impl Element {
             }
             _ => self.stiffness,
         };
+        if let Some((_, stiffness)) = &placed.resistance {
+            local += stiffness;
+        }
         let axes = &placed.frame.axes;
         for i in 0..6 {
             for j in 0..=i {
@@ -299,7 +278,7 @@ impl Element {
                     .copy_from(&turned.transpose());
             }
         }
-        Some((placed.state(), local))
+        Some((self.state_of(&placed), local))
     }
 
     fn consistent(&self, placed: &Placed, spin: &[Matrix3<f64>; 3]) -> Stiffness {
@@ -351,6 +330,14 @@ impl Element {
         tangent
     }
 
+    fn state_of(&self, placed: &Placed) -> ElementState {
+        let elastic = 0.5 * placed.deformation.dot(&placed.forces);
+        ElementState {
+            energy: elastic + self.collapse.value(&placed.frame.corners),
+            gradient: placed.gradient(),
+        }
+    }
+
     fn place(&self, x: &[Vec3; 3], turns: &[UnitQuaternion<f64>; 3]) -> Option<Placed> {
         let (frame, deformation) = self.deform(x, turns)?;
         Some(Placed {
@@ -359,6 +346,7 @@ impl Element {
             deformation,
             forces: self.stiffness * deformation,
             log_derivatives: [0, 1, 2].map(|i| log_derivative(&part(&deformation, 6 * i + 3))),
+            resistance: self.collapse.derivatives(&frame.corners),
         })
     }
 
@@ -417,7 +405,8 @@ impl Element {
 }
 
 impl Placed {
-    fn state(&self) -> ElementState {
+    /// The gradient in the world.
+    fn gradient(&self) -> ElementVector {
         let axes = &self.frame.axes;
         let mut gradient = ElementVector::zeros();
         let mut set = |first: usize, v: Vec3| {
@@ -442,10 +431,14 @@ impl Placed {
                 }
             }
         }
-        ElementState {
-            energy: 0.5 * self.deformation.dot(&self.forces),
-            gradient,
+        if let Some((resistance, _)) = &self.resistance {
+            for k in 0..6 {
+                let added = axes * part(resistance, 3 * k);
+                let mut rows = gradient.fixed_rows_mut::<3>(3 * k);
+                rows += added;
+            }
         }
+        gradient
     }
 }
 

@@ -1,5 +1,7 @@
 //! What can be wrong with a Bézier shell or with what is asked of it.
 
+use crate::contact::{StartError, TouchingPair};
+
 /// Why a Bézier shell cannot be made, moved or cut.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -58,7 +60,8 @@ pub enum BezierError {
     Undefined,
     /// A fine surface that is not that of the shell.
     #[error(
-        "vertex {vertex} of the fine surface is {distance:.3e} m from the shell, more than {limit:.3e} m"
+        "vertex {vertex} of the fine surface is {distance:.3e} m from the shell, more than {limit:.3e} m: bring the two meshes to one \
+         place and scale, or allow a larger reach (surface.reach)"
     )]
     FarFromShell {
         /// Which vertex.
@@ -117,7 +120,8 @@ pub enum BezierError {
     },
     /// A path that separates nothing.
     #[error(
-        "a cut along {stops} stops opens nothing: both ends are inside and there is none between; make it longer"
+        "the path opens nothing: {stops} of its stops are left where loops are left out, and both ends are inside the surface; make it \
+         longer, and let it not come back to where it was"
     )]
     PathTooShort {
         /// Number of stops.
@@ -150,7 +154,32 @@ pub enum BezierError {
         /// How many vertices there are.
         vertices: usize,
     },
+    /// A surface that touches something after a cut or a suture.
+    #[error("{}", touching(pairs))]
+    Touches {
+        /// What touches, worst first.
+        pairs: Vec<TouchingPair>,
+    },
     /// The mesh that comes of a change is not one that can be simulated.
     #[error(transparent)]
     Mesh(#[from] crate::mesh::MeshError),
+}
+
+impl From<StartError> for BezierError {
+    fn from(error: StartError) -> Self {
+        Self::Touches { pairs: error.pairs }
+    }
+}
+
+/// The worst place, how many more there are, and what helps.
+fn touching(pairs: &[TouchingPair]) -> String {
+    let worst = pairs.first().map_or("", |pair| &pair.description);
+    let more = match pairs.len() {
+        0 | 1 => String::new(),
+        places => format!(", and in {} more places", places - 1),
+    };
+    format!(
+        "the fine surface then touches: {worst}{more}; cut and sew away from obstacles and where parts are apart, or with finer \
+         elements, which change their shape less when they are divided"
+    )
 }

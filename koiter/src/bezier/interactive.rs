@@ -110,8 +110,10 @@ impl Interaction {
         let edge = (shell.area() / shell.elements().len() as f64).sqrt();
         let limits = NewtonLimits {
             iterations: self.iterations,
-            // A thousandth of an edge cannot be seen.
-            tolerance: 1e-3 * edge,
+            // A thousandth of an edge cannot be seen, but gaps are smaller.
+            tolerance: (self.contact.as_ref())
+                .map_or(f64::INFINITY, MappedContact::tolerance)
+                .min(1e-3 * edge),
             deadline: Some(start + budget),
             tangent: Tangent::Corotated,
             ..NewtonLimits::for_edges(edge)
@@ -144,16 +146,25 @@ impl Interaction {
         report
     }
 
-    /// Goes on with a shell that was cut or sewn; drags and loads go along, contact ends: lips lie on each other. `pose` is that
-    /// after sewing; without one it is that of the cut.
-    pub fn change(&mut self, change: &Change, pose: Option<Pose>) {
+    /// Goes on with a shell that was cut or sewn; drags, loads and contact go along. `pose` is that after sewing; without one it is
+    /// that of the cut.
+    ///
+    /// # Errors
+    /// As [`MappedContact::after`]; nothing is changed then.
+    pub fn change(&mut self, change: &Change, pose: Option<Pose>) -> Result<(), BezierError> {
+        let dynamics = self.dynamics.changed(change, pose);
+        if let Some(contact) = &self.contact {
+            let (surface, _) = change.surface(contact.mapped());
+            let after = contact.after(surface, &dynamics.pose, &change.near())?;
+            self.contact = Some(after);
+        }
         let points: Vec<SurfacePoint> = self.drags.iter().map(|d| d.point).collect();
         for (drag, point) in self.drags.iter_mut().zip(change.points(&points)) {
             drag.point = point;
         }
         self.load = change.load(&self.load);
-        self.contact = None;
-        self.dynamics = self.dynamics.changed(change, pose);
+        self.dynamics = dynamics;
+        Ok(())
     }
 
     /// Pulls on the point of a drag no more.
@@ -186,8 +197,8 @@ impl Interaction {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bezier::ElementKind;
     use crate::bezier::problems::{RoofEdges, roof};
+    use crate::bezier::{ContactOptions, ElementKind, MappedSurface, SurfacePath};
 
     fn interaction() -> Interaction {
         let problem = roof(ElementKind::Bezier, 4, RoofEdges::Clamped).unwrap();
@@ -255,6 +266,45 @@ mod tests {
         }
         // The springs hold at most ½ k |target − x|² when a drag begins, and six begin.
         assert!(worst < 6.0 * 0.5 * 1e6 * 30f64.powi(2), "{worst}");
+    }
+
+    #[test]
+    fn a_cut_while_it_is_dragged_takes_drags_and_contact_along() {
+        let mut played = interaction();
+        let shell = &played.dynamics.shell;
+        let rest = shell.rest_pose();
+        let options = ContactOptions {
+            d_hat: 0.05,
+            kappa: 1e4,
+            offset: 0.0,
+            friction: 0.0,
+            friction_speed: 1e-3,
+        };
+        let fine = MappedSurface::subdivided(shell, 2);
+        played.contact = Some(MappedContact::new("roof", fine, Vec::new(), &rest, options));
+        // Across the middle, from the second row of nodes to the last but one.
+        let ends = [6, 18].map(|node| shell.nearest(&rest.positions[node], |_| true).unwrap().1);
+        let path = SurfacePath::between(shell, &rest.positions, &ends[0], &ends[1]).unwrap();
+        let change = shell.cut(&path).unwrap();
+        let lip = change.seam[0][0];
+        played.drags.push(drag(Vec3::zeros()));
+        let at = Carried::new(shell, &played.drags[0].point).position(&rest);
+        played.change(&change, None).unwrap();
+        let carried = Carried::new(&played.dynamics.shell, &played.drags[0].point);
+        // A divided element has normals in between: another cubic, by less than the sagitta of a cell of 6 m.
+        assert!((carried.position(&played.dynamics.pose) - at).norm() < 0.1);
+        let asleep = |played: &Interaction| played.contact.as_ref().unwrap().num_asleep();
+        let all = asleep(&played);
+        assert!(all > 0);
+        played.drags.clear();
+        played
+            .load
+            .add_force(lip as usize, Vec3::new(0.0, 0.0, 3e5));
+        for _ in 0..20 {
+            let report = played.frame(Duration::from_secs(10));
+            assert!(!report.held, "{report:?}");
+        }
+        assert!(asleep(&played) < all, "{all}");
     }
 
     #[test]

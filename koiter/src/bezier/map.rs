@@ -252,13 +252,7 @@ impl MappedSurface {
 
     /// Edges of the triangles, each once, by smaller and larger vertex.
     pub fn edges(&self) -> Vec<[u32; 2]> {
-        let mut edges: Vec<[u32; 2]> = (self.faces.iter())
-            .flat_map(|f| [[f[0], f[1]], [f[1], f[2]], [f[2], f[0]]])
-            .map(|[a, b]| [a.min(b), a.max(b)])
-            .collect();
-        edges.sort_unstable();
-        edges.dedup();
-        edges
+        edges_of(&self.faces)
     }
 
     /// Where each vertex is bound.
@@ -296,6 +290,17 @@ impl MappedSurface {
         }
         loads
     }
+}
+
+/// Edges of triangles, each once, by smaller and larger vertex.
+pub(super) fn edges_of(faces: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    let mut edges: Vec<[u32; 2]> = (faces.iter())
+        .flat_map(|f| [[f[0], f[1]], [f[1], f[2]], [f[2], f[0]]])
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
 }
 
 /// Finds closest points of the flat rest triangles.

@@ -9,18 +9,21 @@
 //!
 //! The curvature of the map itself is left out of H. Between two poses the fine surface is taken to go straight, and this
 //! way is searched for collisions: what is left free of intersections by it is free of them.
+//!
+//! After a cut or a suture contact begins anew on the fine surface there is then ([`MappedContact::after`]).
 
 use std::sync::Arc;
 
+use super::map::edges_of;
 use super::newton::Potential;
-use super::{MappedSurface, Pose, Tangent};
+use super::{BezierError, MappedSurface, Pose, Tangent};
 use crate::Vec3;
 use crate::assembly::{
     DofLayout, Energy, HessianBuilder, NodeId, Pattern, PatternBuilder, PsdProjection,
     SymmetricMatrix,
 };
 use crate::contact::{
-    CollisionBody, CollisionMesh, CollisionObstacle, Contact, ContactStatistics, Friction,
+    CollisionBody, CollisionMesh, CollisionObstacle, Contact, ContactStatistics, Friction, Pair,
     StartError, UnknownBody,
 };
 
@@ -43,14 +46,35 @@ pub struct ContactOptions {
 pub struct MappedContact {
     contact: Contact,
     friction: Friction,
-    friction_speed: f64,
     mapped: MappedSurface,
+    made_of: MadeOf,
     layout: DofLayout,
     /// Points of the obstacles, one after the other [m].
     obstacles: Vec<Vec3>,
     /// Nodes that touch, coupled through the fine surface, since the last iteration began.
     coupled: Vec<[u32; 2]>,
     pattern: Option<Arc<Pattern>>,
+}
+
+/// What contact was made of, apart from the fine surface.
+#[derive(Clone)]
+struct MadeOf {
+    name: String,
+    obstacles: Vec<CollisionObstacle>,
+    options: ContactOptions,
+    /// Friction between two bodies by name.
+    friction_of_pairs: Vec<([String; 2], f64)>,
+}
+
+/// What a contact owes to its past.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactState {
+    /// Stiffness of the barrier [J/m²]: it grows where gaps shrink.
+    pub kappa: f64,
+    /// Points of the obstacles [m].
+    pub obstacles: Vec<Vec3>,
+    /// Pairs at cuts and seams that have not been apart since, in order.
+    pub asleep: Vec<Pair>,
 }
 
 /// What is held and the obstacles stop at this fraction of the way to where they would touch.
@@ -68,21 +92,33 @@ impl MappedContact {
         pose: &Pose,
         options: ContactOptions,
     ) -> Self {
+        let made_of = MadeOf {
+            name: name.to_owned(),
+            obstacles,
+            options,
+            friction_of_pairs: Vec::new(),
+        };
+        Self::of(made_of, mapped, pose)
+    }
+
+    fn of(made_of: MadeOf, mapped: MappedSurface, pose: &Pose) -> Self {
+        let options = made_of.options;
         let mut layout = DofLayout::new();
         let rest_positions = mapped.positions(pose);
+        let faces = without_slivers(mapped.faces(), &rest_positions);
         let mut bodies = vec![CollisionBody {
-            name: name.to_owned(),
+            name: made_of.name.clone(),
             first_dof: layout.push_nodes(rest_positions.len(), 3, true),
             num_vertices: rest_positions.len(),
-            edges: mapped.edges(),
-            faces: mapped.faces().to_vec(),
+            edges: edges_of(&faces),
+            faces,
             rest_positions,
             offset: options.offset,
             is_obstacle: false,
             friction: options.friction,
         }];
         let (mut planes, mut points) = (Vec::new(), Vec::new());
-        for obstacle in obstacles {
+        for obstacle in made_of.obstacles.iter().cloned() {
             points.extend_from_slice(&obstacle.points);
             let first = layout.push_nodes(obstacle.points.len(), 3, false);
             obstacle.add_to(first, &mut bodies, &mut planes);
@@ -95,9 +131,9 @@ impl MappedContact {
                 layout: layout.clone(),
                 ..Friction::default()
             },
-            friction_speed: options.friction_speed,
             obstacles: points,
             mapped,
+            made_of,
             layout,
             coupled: Vec::new(),
             pattern: None,
@@ -105,11 +141,12 @@ impl MappedContact {
     }
 
     /// Begins a step of `dt` [s]: friction acts with the normal forces there are at `pose`, on what slides from there.
-    /// Nothing is kept of the steps before but the stiffness of the barrier ([`Self::kappa`]).
+    /// Nothing is kept of the steps before but [`Self::state`].
     pub fn begin_step(&mut self, pose: &Pose, dt: f64) {
         let q = self.unknowns(pose);
+        self.contact.wake(&q);
         self.contact.begin_step(&q);
-        self.friction.smoothing = self.friction_speed * dt;
+        self.friction.smoothing = self.made_of.options.friction_speed * dt;
         self.contact.lag(&q, &mut self.friction);
         self.friction.start = q;
     }
@@ -119,15 +156,75 @@ impl MappedContact {
         self.contact.value(&self.unknowns(pose))
     }
 
-    /// Stiffness of the barrier [J/m²]: it grows where gaps shrink.
-    pub fn kappa(&self) -> f64 {
-        self.contact.kappa()
+    /// What it owes to its past.
+    pub fn state(&self) -> ContactState {
+        ContactState {
+            kappa: self.contact.kappa(),
+            obstacles: self.obstacles.clone(),
+            asleep: self.contact.asleep().to_vec(),
+        }
     }
 
-    /// Takes up stiffness of the barrier and points of the obstacles of an earlier moment.
-    pub fn restore(&mut self, kappa: f64, obstacles: &[Vec3]) {
-        self.contact.set_kappa(kappa);
-        self.obstacles.copy_from_slice(obstacles);
+    /// Takes up the state of an earlier moment; false for one of other bodies, or with numbers that are not finite, which is not
+    /// taken up.
+    pub fn restore(&mut self, state: &ContactState) -> bool {
+        let vertices = self.contact.mesh().vertices.len();
+        let is_vertex = |v: &u32| (*v as usize) < vertices;
+        let is_point = |x: &Vec3| x.iter().all(|c| c.is_finite());
+        let fits = state.kappa.is_finite()
+            && state.obstacles.len() == self.obstacles.len()
+            && state.obstacles.iter().all(is_point)
+            && (state.asleep.iter()).all(|pair| pair.vertices.iter().all(is_vertex));
+        if fits {
+            self.contact.set_kappa(state.kappa);
+            self.obstacles.copy_from_slice(&state.obstacles);
+            self.contact.set_asleep(state.asleep.clone());
+        }
+        fits
+    }
+
+    /// The same contact over another fine surface: stiffness and obstacles stay, nothing sleeps. `pose` weighs areas.
+    pub fn over(&self, mapped: MappedSurface, pose: &Pose) -> Self {
+        let mut over = Self::of(self.made_of.clone(), mapped, pose);
+        for (bodies, friction) in &self.made_of.friction_of_pairs {
+            (over.contact.set_friction(bodies, *friction)).expect("the bodies are the same");
+        }
+        over.contact.set_kappa(self.contact.kappa());
+        over.obstacles.clone_from(&self.obstacles);
+        over
+    }
+
+    /// This contact over the fine surface after a cut or a suture. What lies on each other there sleeps ([`Contact::put_to_sleep`]);
+    /// `is_near` says which nodes are at the cut or the seam ([`super::Change::near`]).
+    ///
+    /// # Errors
+    /// A surface that then touches an obstacle, or crosses itself.
+    pub fn after(
+        &self,
+        mapped: MappedSurface,
+        pose: &Pose,
+        is_near: &[bool],
+    ) -> Result<Self, BezierError> {
+        let mut over = self.over(mapped, pose);
+        let carried = over.mapped.carried();
+        let is_fresh: Vec<bool> = (carried.iter())
+            .map(|vertex| vertex.nodes.iter().any(|node| is_near[*node as usize]))
+            .collect();
+        let q = over.unknowns(pose);
+        let is_fresh = |v: u32| is_fresh.get(v as usize) == Some(&true);
+        over.contact.put_to_sleep(&q, is_fresh);
+        over.contact.check_start(&q)?;
+        Ok(over)
+    }
+
+    /// A motion that changes gaps by little, a hundredth of the barrier's width [m]: beyond it, Newton's method has not converged.
+    pub fn tolerance(&self) -> f64 {
+        0.01 * self.made_of.options.d_hat
+    }
+
+    /// How many pairs at cuts and seams have not been apart since.
+    pub fn num_asleep(&self) -> usize {
+        self.contact.asleep().len()
     }
 
     /// Pairs that push, and the smallest gap, as of the last iteration.
@@ -140,7 +237,9 @@ impl MappedContact {
     /// # Errors
     /// A body that there is not.
     pub fn set_friction(&mut self, bodies: &[String; 2], friction: f64) -> Result<(), UnknownBody> {
-        self.contact.set_friction(bodies, friction)
+        self.contact.set_friction(bodies, friction)?;
+        (self.made_of.friction_of_pairs).push((bodies.clone(), friction));
+        Ok(())
     }
 
     /// Refuses a pose in which something touches or intersects.
@@ -163,6 +262,9 @@ impl MappedContact {
     /// Moves the obstacles towards other points and the shell from a pose towards another, but not so far that anything
     /// touches; returns the fraction of the way, and the pose there.
     pub fn approach(&mut self, from: &Pose, to: &Pose, towards: &[Vec3]) -> (f64, Pose) {
+        if to == from && towards == self.obstacles {
+            return (1.0, to.clone());
+        }
         let start = self.unknowns(from);
         let (before, motion) = (self.obstacles.clone(), from.motion_to(to));
         let mut fraction = 1.0;
@@ -328,6 +430,20 @@ impl MappedContact {
             }
         }
     }
+}
+
+/// A triangle flatter than this fraction of its longest edge does not collide: its distances have no derivatives, and its neighbours
+/// are where it is. A cut leaves such ones where it passes a vertex of the fine surface.
+const SLIVER: f64 = 1e-3;
+
+fn without_slivers(faces: &[[u32; 3]], x: &[Vec3]) -> Vec<[u32; 3]> {
+    let is_solid = |face: &&[u32; 3]| {
+        let [a, b, c] = face.map(|v| x[v as usize]);
+        let longest = [b - a, c - b, a - c].map(|e| e.norm_squared());
+        let longest = longest.into_iter().fold(0.0, f64::max);
+        (b - a).cross(&(c - a)).norm() > SLIVER * longest
+    };
+    faces.iter().filter(is_solid).copied().collect()
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@
 
 mod andes;
 mod change;
+mod collapse;
 mod control_points;
 mod cut;
 mod discrete_kirchhoff;
@@ -40,18 +41,20 @@ mod statics;
 mod stiffness;
 mod surface_path;
 mod suture;
+mod tangent;
 mod torn;
 
 pub use change::{Change, Origin, Parent};
+pub use collapse::BEGIN as COLLAPSE_BEGINS;
 pub use dynamics::Dynamics;
-pub use element::{Element, ElementKind, ElementState, RestElement, Tangent};
+pub use element::{Element, ElementKind, ElementState, RestElement};
 pub use error::BezierError;
 pub use fields::PointFields;
 pub use frame::FrameRule;
 pub use interactive::{Drag, FrameReport, Interaction};
 pub use lips::{Lens, Lips, Patch};
 pub use map::{Carried, MappedSurface, SurfacePoint};
-pub use mapped_contact::{ContactOptions, MappedContact};
+pub use mapped_contact::{ContactOptions, ContactState, MappedContact};
 pub use newton::{NewtonLimits, NewtonOutcome, Potential, Solver};
 pub use normals::{smooth_normals, vertex_normals, vertex_normals_at};
 pub use pose::{NODE_UNKNOWNS, Pose, Supports};
@@ -60,3 +63,4 @@ pub use shell::{BezierShell, ShellOptions};
 pub use statics::{DeadLoad, Pressure, linear_static};
 pub use surface_path::{NEAR_END, PathNode, SurfacePath};
 pub use suture::SeamAngle;
+pub use tangent::Tangent;

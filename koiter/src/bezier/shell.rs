@@ -220,6 +220,18 @@ impl BezierShell {
         energy.is_finite().then_some(energy)
     }
 
+    /// The element with the smallest share of its area at rest, and that share.
+    pub fn most_pressed(&self, pose: &Pose) -> (usize, f64) {
+        let share = |index: usize| {
+            let [a, b, c] = self.corners(index, pose).0;
+            0.5 * (b - a).cross(&(c - a)).norm() / self.elements[index].area()
+        };
+        (0..self.elements.len())
+            .map(|index| (index, share(index)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .expect("a shell has elements")
+    }
+
     /// Derivative of the elastic energy by positions [N] and rotations [N m]; collapsed elements add nothing.
     pub fn gradient(&self, pose: &Pose) -> Vec<f64> {
         let states = parallel_map(self.elements.len(), |index| {
@@ -305,6 +317,19 @@ impl Potential for BezierShell {
     fn add_to_pattern(&self, pattern: &mut PatternBuilder) {
         for face in self.mesh.faces() {
             pattern.couple(face.map(NodeId));
+        }
+    }
+
+    /// Half of a way on which the normal of an element turns by more than a right angle: it may have gone through nothing.
+    fn allowed(&mut self, from: &Pose, to: &Pose) -> f64 {
+        let normal = |face: &[u32; 3], pose: &Pose| {
+            let [a, b, c] = face.map(|v| pose.positions[v as usize]);
+            (b - a).cross(&(c - a))
+        };
+        let turns_over = |face: &[u32; 3]| normal(face, from).dot(&normal(face, to)) < 0.0;
+        match self.mesh.faces().iter().any(turns_over) {
+            true => 0.5,
+            false => 1.0,
         }
     }
 }

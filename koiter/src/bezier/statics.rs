@@ -1,10 +1,12 @@
 //! Loads, and the linear equilibrium under them.
 
+use nalgebra::Matrix3;
+
 use super::newton::Potential;
 use super::pose::NODE_UNKNOWNS;
 use super::{BezierError, BezierShell, NewtonLimits, Pose, Solver, Supports, Tangent};
 use crate::Vec3;
-use crate::assembly::{HessianBuilder, ordered_sum};
+use crate::assembly::{HessianBuilder, NodeId, ordered_sum};
 
 /// Forces that keep their direction and moments about axes that stay: six numbers a node [N, N m].
 ///
@@ -108,7 +110,14 @@ impl Potential for DeadLoad {
 }
 
 /// Pressure on the side the normals leave [Pa]: it follows the surface. Forces are those of the pose at which an iteration
-/// began; their change with the pose is left out of the stiffness.
+/// began. A triangle with the edges e_i opposite to its corners pushes each of them by `p/6 (x_1 − x_0) × (x_2 − x_0)`, and the
+/// symmetric part of the change with the pose is
+///
+/// ```text
+/// ∂f_i/∂x_j → p/12 [e_j − e_i]×
+/// ```
+///
+/// The other part cancels between triangles; what is left of it at a free boundary is left out of the stiffness.
 #[derive(Clone, Debug)]
 pub struct Pressure {
     pressure: f64,
@@ -133,6 +142,18 @@ impl Pressure {
             .collect(),
             load: DeadLoad::none(shell.mesh().num_vertices()),
         }
+    }
+
+    /// The blocks of the second derivative below the diagonal, by displacements of two nodes; those on it are zero.
+    fn blocks(&self, pose: &Pose) -> impl Iterator<Item = ([u32; 2], Matrix3<f64>)> {
+        self.faces.iter().flat_map(move |face| {
+            let x = face.map(|v| pose.positions[v as usize]);
+            let opposite = [0, 1, 2].map(|i| x[(i + 2) % 3] - x[(i + 1) % 3]);
+            [[1, 0], [2, 0], [2, 1]].map(|[i, j]| {
+                let arm = (opposite[j] - opposite[i]) * (-self.pressure / 12.0);
+                ([face[i], face[j]], arm.cross_matrix())
+            })
+        })
     }
 
     /// Its forces at a pose.
@@ -166,6 +187,18 @@ impl Potential for Pressure {
         hessian: &mut HessianBuilder<'_>,
     ) {
         self.load.add_derivatives(pose, tangent, gradient, hessian);
+        // It is indefinite: where that of the shell is mixed with one that never is, so is this.
+        let share = tangent.share();
+        for (nodes, block) in self.blocks(pose).filter(|_| share > 0.0) {
+            let nodes = nodes.map(NodeId);
+            hessian.add(nodes[0], nodes[1], false, |r, c| {
+                if r < 3 && c < 3 {
+                    share * block[(r, c)]
+                } else {
+                    0.0
+                }
+            });
+        }
     }
 }
 
@@ -186,4 +219,50 @@ pub fn linear_static(
     };
     let mut load = load.clone();
     solver.linear_step(&mut [shell, &mut load], supports, &rest, &limits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a closed surface the tangent is that of the forces, by differences.
+    #[test]
+    fn the_stiffness_of_pressure_is_the_change_of_its_forces_inside_a_boundary() {
+        let x = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.1, 0.0],
+            [0.2, 0.9, 0.1],
+            [0.3, 0.2, 0.8],
+        ];
+        let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+        let pressure = Pressure {
+            pressure: 2.5,
+            faces: faces.to_vec(),
+            load: DeadLoad::none(4),
+        };
+        let pose = Pose::at(x.map(Vec3::from).to_vec());
+        let mut tangent = nalgebra::DMatrix::<f64>::zeros(12, 12);
+        for (nodes, block) in pressure.blocks(&pose) {
+            for (nodes, block) in [(nodes, block), ([nodes[1], nodes[0]], block.transpose())] {
+                let [i, j] = nodes.map(|v| 3 * v as usize);
+                let mut view = tangent.fixed_view_mut::<3, 3>(i, j);
+                view += block;
+            }
+        }
+        let h = 1e-6;
+        for j in 0..12 {
+            let at = |step: f64| {
+                let mut moved = pose.clone();
+                moved.positions[j / 3][j % 3] += step;
+                pressure.at(&moved)
+            };
+            let (ahead, behind) = (at(h), at(-h));
+            for i in 0..12 {
+                let k = NODE_UNKNOWNS * (i / 3) + i % 3;
+                let change = (ahead.values()[k] - behind.values()[k]) / (2.0 * h);
+                // Forces are quadratic: round-off alone.
+                assert!((tangent[(i, j)] + change).abs() < 1e-8, "{i} {j}");
+            }
+        }
+    }
 }

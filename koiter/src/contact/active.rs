@@ -30,6 +30,8 @@ pub struct Contact {
     /// What lists of neighbours look further than the barrier reaches [m].
     pub(super) margin: f64,
     pub(super) candidates: Candidates,
+    /// Pairs that do not collide, in order ([`Self::put_to_sleep`]).
+    pub(super) asleep: Vec<Pair>,
     /// Candidates whose barrier acts at the last refresh.
     pub(super) active: Vec<Pair>,
     pub(super) active_planes: Vec<ActiveVertex>,
@@ -76,6 +78,7 @@ impl Contact {
             kappa,
             largest_kappa: kappa * LARGEST_STIFFENING,
             candidates: Candidates::default(),
+            asleep: Vec::new(),
             active: Vec::new(),
             active_planes: Vec::new(),
             smallest_gap: f64::INFINITY,

@@ -6,6 +6,7 @@
 //! Reference: Li et al., "Incremental Potential Contact" (2020); Li, Kaufman, Jiang, "Codimensional IPC" (2021).
 
 mod active;
+mod asleep;
 mod audit;
 mod barrier;
 mod boxes;

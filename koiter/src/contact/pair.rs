@@ -28,7 +28,7 @@ use crate::geometry::{
 };
 
 /// What a pair is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PairKind {
     /// Vertex 0 and the face of vertices 1, 2, 3.
     VertexFace,
@@ -37,7 +37,7 @@ pub enum PairKind {
 }
 
 /// Two primitives that may touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Pair {
     /// Which primitives.
     pub kind: PairKind,
@@ -46,6 +46,16 @@ pub struct Pair {
 }
 
 impl Pair {
+    /// The vertices of the one primitive and of the other.
+    #[inline]
+    pub fn primitives(&self) -> [&[u32]; 2] {
+        let (first, second) = self.vertices.split_at(match self.kind {
+            PairKind::VertexFace => 1,
+            PairKind::EdgeEdge => 2,
+        });
+        [first, second]
+    }
+
     /// Closest points at the given positions of the four vertices.
     #[inline]
     pub fn closest(&self, x: &[Vec3; 4]) -> ClosestPoints {

@@ -75,6 +75,9 @@ impl Contact {
     pub(super) fn search(&mut self, x: &[Vec3], dx: &[Vec3]) -> Option<Vec<(Pair, f64)>> {
         let mut candidates = std::mem::take(&mut self.candidates);
         let near = |pair: Pair| {
+            if self.is_asleep(&pair) {
+                return None;
+            }
             let approach = self.approach(&pair, x, dx);
             (approach.nearest < self.touching_distance(&pair) + self.d_hat)
                 .then_some((pair, approach.fraction))

@@ -122,13 +122,17 @@ impl Contact {
                 vertices: edge.into_iter().chain(face).collect(),
             }
         };
-        hits.into_iter().map(describe).collect()
+        let is_awake = |hit: &Intersection| {
+            let (edge, face) = (mesh.edges[hit.edge as usize], mesh.faces[hit.face as usize]);
+            !self.is_crossing_asleep(&edge, &face)
+        };
+        (hits.into_iter().filter(is_awake)).map(describe).collect()
     }
 
     /// The pair, if its surfaces are no further apart than nothing.
     fn overlap(&self, pair: &Pair, x: &[Vec3]) -> Option<TouchingPair> {
         let gap = self.gap(pair, x);
-        if gap > 0.0 {
+        if gap > 0.0 || self.is_asleep(pair) {
             return None;
         }
         let ([a, b, c, d], mesh) = (pair.vertices, &self.mesh);

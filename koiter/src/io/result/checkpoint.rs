@@ -43,7 +43,7 @@ use crate::scene::{Anchor, Snapshot};
 use crate::solve::WorkspaceHistory;
 
 const MAGIC: &[u8; 8] = b"KOITERCP";
-const FORMAT: u32 = 10;
+const FORMAT: u32 = 11;
 
 /// All that is needed to go on with a run to the same bits.
 #[derive(Clone, Debug, PartialEq)]

@@ -111,7 +111,7 @@ pub enum WriteError {
     },
     /// A film of faces that change, in a format that moves vertices only.
     #[error(
-        "faces burn away from frame to frame, which a {format} film cannot show; export one frame, or all as vtu, vtkhdf or usda"
+        "faces change from frame to frame (burnt, cut or sewn), which a {format} film cannot show; export one frame, or all as vtu, vtkhdf or usda"
     )]
     ChangingFaces {
         /// The format.

@@ -59,16 +59,39 @@ impl BezierBody {
         Ok(Some(body))
     }
 
-    /// Carries out the next procedure at the present pose.
+    /// Carries out the next procedure at the present pose, and what touches at it sleeps.
     ///
     /// # Errors
-    /// A path that leaves the surface, and whatever else cannot be done.
+    /// A path that leaves the surface, a surface that touches afterwards, and whatever else cannot be done.
     pub(super) fn carry_out_next(&mut self, model: &BezierModel) -> Result<(), BezierError> {
+        let near = self.perform_next(model)?;
+        if let (Some(contact), Some(near)) = (&self.contact, near) {
+            let after = contact.after(self.fine.clone(), &self.moving.pose, &near)?;
+            self.contact = Some(after);
+        }
+        Ok(())
+    }
+
+    /// The same for what was carried out before: what sleeps is known.
+    ///
+    /// # Errors
+    /// Whatever cannot be done.
+    pub(super) fn repeat_next(&mut self, model: &BezierModel) -> Result<(), BezierError> {
+        if self.perform_next(model)?.is_some()
+            && let Some(contact) = &self.contact
+        {
+            self.contact = Some(contact.over(self.fine.clone(), &self.moving.pose));
+        }
+        Ok(())
+    }
+
+    /// Returns which nodes are near what was changed, if anything was.
+    fn perform_next(&mut self, model: &BezierModel) -> Result<Option<Vec<bool>>, BezierError> {
         let pose = self.moving.pose.clone();
-        perform(self, model, self.done.len())?;
+        let near = perform(self, model, self.done.len())?;
         self.done.push(pose);
         self.shown = ShownPart::of(&self.fine, &self.tracked.owners);
-        Ok(())
+        Ok(near)
     }
 
     /// Positions of the vertices of a part's start shape, as the nodes they became are now [m].
@@ -94,7 +117,7 @@ impl BezierBody {
     }
 
     /// Contact of the fine surface, where it is on.
-    pub(super) fn new_contact(&self, model: &Model) -> Result<Option<MappedContact>, BuildError> {
+    fn new_contact(&self, model: &Model) -> Result<Option<MappedContact>, BuildError> {
         let parts = &model
             .bezier
             .as_ref()
@@ -156,7 +179,17 @@ fn join(model: &BezierModel) -> Result<(BezierShell, MappedSurface), BuildError>
             FineSurface::Subdivided => MappedSurface::subdivided(&shell, model.subdivide),
             FineSurface::Bound { surface, reach } => {
                 is_subdivided = false;
-                MappedSurface::new(&shell, surface, *reach).map_err(refuse)?
+                let fine = MappedSurface::new(&shell, surface, *reach).map_err(refuse)?;
+                let edge = part.shell.surface.mean_edge_length();
+                if fine.farthest() > edge {
+                    log::warn!(
+                        "the fine surface of '{}' was moved onto the elements by up to {:.3e} m, more than their mean edge of \
+                         {edge:.3e} m",
+                        part.shell.name,
+                        fine.farthest()
+                    );
+                }
+                fine
             }
         };
         let first = whole.as_ref().map_or(0, |whole| whole.elements().len());

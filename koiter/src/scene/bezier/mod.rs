@@ -7,6 +7,7 @@
 mod body;
 mod played;
 mod procedures;
+mod report;
 mod shown;
 mod state;
 mod step;

@@ -25,11 +25,11 @@ impl BezierBody {
         dynamics.damping = moving.damping;
         let mut played = Interaction::new(dynamics, dt);
         played.load = self.load(model, time);
-        // The start was found free of contact, and so is every state since.
-        played.contact = self.new_contact(model).ok().flatten();
-        if let (Some(contact), Some(own)) = (&mut played.contact, &self.contact) {
-            contact.restore(own.kappa(), own.obstacles());
-        }
+        played.contact = self.contact.as_ref().map(|own| {
+            let mut contact = own.over(self.fine.clone(), &moving.pose);
+            contact.restore(&own.state());
+            contact
+        });
         played
     }
 }

@@ -10,24 +10,25 @@ use crate::bezier::{
 };
 use crate::mesh::VertexId;
 
-/// Does what the procedure with this index says.
+/// Does what the procedure with this index says; where that changed the mesh, returns which nodes are near the change.
 pub(super) fn perform(
     body: &mut BezierBody,
     model: &BezierModel,
     index: usize,
-) -> Result<(), BezierError> {
+) -> Result<Option<Vec<bool>>, BezierError> {
     let lips = |body: &BezierBody, cut: usize| -> Lips {
         body.tracked.lips[cut]
             .clone()
             .expect("cuts come before what is done with them")
     };
-    match &model.procedures[index].kind {
+    let change = match &model.procedures[index].kind {
         ProcedureKind::Cut { shell, path } => {
             let path = path_on(body, *shell, path)?;
             let change = body.moving.shell.cut(&path)?;
             let lips = Lips::new(&change, &path);
             follow(body, model, &change, None);
             body.tracked.lips[index] = Some(lips);
+            change
         }
         ProcedureKind::Open {
             cut, force, lift, ..
@@ -35,6 +36,7 @@ pub(super) fn perform(
             let (shell, pose) = (&body.moving.shell, &body.moving.pose);
             let pull = lips(body, *cut).opening(shell, pose, *force, *lift);
             body.tracked.pulls[index] = Some(pull);
+            return Ok(None);
         }
         ProcedureKind::Patch {
             cut,
@@ -47,11 +49,11 @@ pub(super) fn perform(
                 across: *across,
                 options: model.options(*section),
             };
-            sew_in(body, model, *cut, &lips(body, *cut), &lens)?;
+            sew_in(body, model, *cut, &lips(body, *cut), &lens)?
         }
         ProcedureKind::Close { cut } => {
             let pairs = lips(body, *cut).pairs;
-            sew(body, model, &pairs, SeamAngle::Rest)?;
+            sew(body, model, &pairs, SeamAngle::Rest)?
         }
         ProcedureKind::Sew {
             first,
@@ -63,10 +65,10 @@ pub(super) fn perform(
                 vertices.iter().map(|v| present[v.0 as usize]).collect()
             };
             let pairs = nearest_pairs(&row(first), &row(second), &body.moving.pose, *reach)?;
-            sew(body, model, &pairs, SeamAngle::Current)?;
+            sew(body, model, &pairs, SeamAngle::Current)?
         }
-    }
-    Ok(())
+    };
+    Ok(Some(change.near()))
 }
 
 /// The path from point to point over a part, on the shell as it is at rest in each of its elements.
@@ -109,10 +111,10 @@ fn sew(
     model: &BezierModel,
     pairs: &[[u32; 2]],
     angle: SeamAngle,
-) -> Result<(), BezierError> {
+) -> Result<Change, BezierError> {
     let (change, pose) = body.moving.shell.sew(pairs, &body.moving.pose, angle)?;
     follow(body, model, &change, Some(pose));
-    Ok(())
+    Ok(change)
 }
 
 /// Puts a patch between lips and sews it in.
@@ -122,7 +124,7 @@ fn sew_in(
     cut: usize,
     lips: &Lips,
     lens: &Lens,
-) -> Result<(), BezierError> {
+) -> Result<Change, BezierError> {
     let ProcedureKind::Cut { shell: owner, .. } = model.procedures[cut].kind else {
         unreachable!("lips are those of a cut");
     };
@@ -142,7 +144,7 @@ fn sew_in(
     body.tracked = body.tracked.with_patch(&patch, owner);
     body.moving = with_patch(&body.moving, both, pose, &patch);
     follow(body, model, &change, Some(after));
-    Ok(())
+    Ok(change)
 }
 
 /// The motion with nodes of a patch that is at rest.

@@ -1,8 +1,7 @@
 //! What Bézier shells owe to their past.
 
 use super::body::BezierBody;
-use crate::Vec3;
-use crate::bezier::{NODE_UNKNOWNS, Pose};
+use crate::bezier::{ContactState, MappedContact, NODE_UNKNOWNS, Pose};
 use crate::scene::model::Model;
 
 /// The Bézier shells of a simulation, as far as the model does not say it: taken up, they take the same steps, bit for bit.
@@ -16,23 +15,19 @@ pub struct BezierState {
     pub velocities: Vec<f64>,
     /// Couplings of the solver's matrix.
     pub couplings: Vec<[u32; 2]>,
-    /// Stiffness of the barrier [J/m²]; 0 without contact.
-    pub kappa: f64,
-    /// Points of the obstacles as contact sees them [m].
-    pub obstacles: Vec<Vec3>,
+    /// What contact owes to its past, where it is on.
+    pub contact: Option<ContactState>,
 }
 
 impl BezierBody {
     /// What it owes to its past.
     pub(in crate::scene) fn state(&self) -> BezierState {
-        let contact = self.contact.as_ref();
         BezierState {
             done: self.done.clone(),
             pose: self.moving.pose.clone(),
             velocities: self.moving.velocities.clone(),
             couplings: self.moving.couplings(),
-            kappa: contact.map_or(0.0, |contact| contact.kappa()),
-            obstacles: contact.map_or_else(Vec::new, |contact| contact.obstacles().to_vec()),
+            contact: self.contact.as_ref().map(MappedContact::state),
         }
     }
 
@@ -60,10 +55,10 @@ impl BezierBody {
                 return Err("a procedure found another shell".to_owned());
             }
             body.moving.pose = pose.clone();
-            (body.carry_out_next(bezier)).map_err(|error| error.to_string())?;
+            (body.repeat_next(bezier)).map_err(|error| error.to_string())?;
         }
         let nodes = body.moving.pose.len();
-        let finite = state.velocities.iter().all(|v| v.is_finite()) && state.kappa.is_finite();
+        let finite = state.velocities.iter().all(|v| v.is_finite());
         if !fits(&state.pose, nodes) || state.velocities.len() != NODE_UNKNOWNS * nodes || !finite {
             return Err("its nodes are not those of the shells, or not finite".to_owned());
         }
@@ -78,15 +73,14 @@ impl BezierBody {
         body.moving.pose = state.pose.clone();
         body.moving.velocities.clone_from(&state.velocities);
         body.moving.restore_couplings(&state.couplings);
-        if let Some(contact) = &mut body.contact {
-            let is_finite = |x: &Vec3| x.iter().all(|c| c.is_finite());
-            if contact.obstacles().len() != state.obstacles.len()
-                || !state.obstacles.iter().all(is_finite)
-            {
-                return Err("its obstacles are others".to_owned());
-            }
-            contact.restore(state.kappa, &state.obstacles);
+        let fits = match (&mut body.contact, &state.contact) {
+            (Some(contact), Some(state)) => contact.restore(state),
+            (None, None) => true,
+            _ => false,
+        };
+        match fits {
+            true => Ok(body),
+            false => Err("its contact is another".to_owned()),
         }
-        Ok(body)
     }
 }

@@ -11,7 +11,7 @@ use crate::bezier::{
     BezierError, DeadLoad, MappedContact, NODE_UNKNOWNS, NewtonLimits, NewtonOutcome, Pose,
     Potential, Pressure, Supports, linear_static,
 };
-use crate::integrate::{Diagnostics, StepError, StepReport};
+use crate::integrate::{StepError, StepReport};
 use crate::scene::model::{Constraint, IntegratorKind, Load, LoadKind, Model, Obstacle};
 use crate::scene::simulation::Simulation;
 
@@ -23,12 +23,12 @@ const TIME_ROUNDING: f64 = 1e-9;
 
 /// What a step came to.
 #[derive(Default)]
-struct Effort {
-    outcome: NewtonOutcome,
-    iterations: usize,
-    parts: usize,
+pub(super) struct Effort {
+    pub(super) outcome: NewtonOutcome,
+    pub(super) iterations: usize,
+    pub(super) parts: usize,
     /// The share of the way of obstacles and constraints that is left.
-    left: f64,
+    pub(super) left: f64,
 }
 
 impl Simulation {
@@ -87,7 +87,6 @@ impl BezierBody {
         if model.integrator == IntegratorKind::LinearStatic {
             return self.linear(&load, &pressures).map_err(failed);
         }
-        let limits = self.limits(model, dt);
         let towards = obstacle_points(model, end);
         let target = self.held_at(bezier, end);
         let mut effort = Effort {
@@ -105,6 +104,7 @@ impl BezierBody {
                     contact.approach(&self.moving.pose, &held, &towards)
                 }
             };
+            let limits = self.limits(model, part * fraction, contact.as_ref());
             let outcome = self.solve_part(
                 model,
                 pose,
@@ -190,17 +190,18 @@ impl BezierBody {
         Ok(())
     }
 
-    /// When Newton's method stops: the tolerances of the scene on the motion of a node.
-    fn limits(&self, model: &Model, dt: f64) -> NewtonLimits {
+    /// When Newton's method stops: the tolerances of the scene on the motion of a node, finer where gaps are.
+    fn limits(&self, model: &Model, dt: f64, contact: Option<&MappedContact>) -> NewtonLimits {
         let shell = &self.moving.shell;
         let edge = (shell.area() / shell.elements().len() as f64).sqrt();
         let solver = &model.solver;
         NewtonLimits {
             iterations: solver.max_iterations,
             tolerance: match model.integrator.is_dynamic() {
-                true => solver.velocity_tolerance * dt,
-                false => solver.displacement_tolerance,
-            },
+                true if dt > 0.0 => solver.velocity_tolerance * dt,
+                _ => solver.displacement_tolerance,
+            }
+            .min(contact.map_or(f64::INFINITY, MappedContact::tolerance)),
             ..NewtonLimits::for_edges(edge)
         }
     }
@@ -369,56 +370,6 @@ impl BezierBody {
         }
         total
     }
-
-    fn report(&self, model: &Model, effort: &Effort) -> StepReport {
-        let statistics = self.contact.as_ref().map(MappedContact::statistics);
-        let pushed = (self.contact.as_ref()).map(|contact| contact.forces(&self.moving.pose).len());
-        let mut measures = vec![
-            ("elements", self.moving.shell.elements().len() as f64),
-            ("procedures", self.done.len() as f64),
-        ];
-        measures.extend(pushed.map(|count| ("pushed_vertices", count as f64)));
-        let converged = effort.outcome.converged && effort.left == 0.0;
-        StepReport {
-            newton_iterations: effort.iterations,
-            converged,
-            contacts: statistics.as_ref().map_or(0, |s| s.contacts),
-            min_gap: statistics.as_ref().map_or(f64::INFINITY, |s| s.min_gap),
-            kappa: statistics.as_ref().map_or(0.0, |s| s.kappa),
-            parts: effort.parts,
-            measures,
-            diagnosis: (!converged).then(|| diagnosis(model, effort)),
-            diagnostics: Diagnostics {
-                indefinite: effort.outcome.indefinite,
-                closest: statistics.and_then(|s| s.closest),
-                ..Diagnostics::default()
-            },
-            ..StepReport::default()
-        }
-    }
-}
-
-/// Why a step did not converge, and what to try.
-fn diagnosis(model: &Model, effort: &Effort) -> String {
-    if effort.left > 0.0 {
-        return format!(
-            "obstacles and constraints came only {:.0} % of their way in {} parts before they touched the shell: move them more slowly",
-            100.0 * (1.0 - effort.left),
-            effort.parts
-        );
-    }
-    let outcome = &effort.outcome;
-    format!(
-        "the last of {} iterations still moved a node by {:.1e} m{}: take smaller steps, more damping or a larger tolerance",
-        outcome.iterations,
-        outcome.last_step,
-        match (outcome.indefinite, model.integrator.is_dynamic()) {
-            (0, _) => "",
-            (_, true) => ", and the tangent was indefinite: something buckles",
-            (_, false) =>
-                ", and the tangent was indefinite: something buckles, which inertia would hold (implicit-euler)",
-        }
-    )
 }
 
 /// Where constraints want nodes to be.

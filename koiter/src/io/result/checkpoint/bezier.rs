@@ -3,7 +3,8 @@
 use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::{Bytes, list, numbers, vectors};
-use crate::bezier::Pose;
+use crate::bezier::{ContactState, Pose};
+use crate::contact::{Pair, PairKind};
 use crate::io::bytes::ByteReader;
 use crate::scene::BezierState;
 
@@ -19,8 +20,14 @@ impl Bytes {
             out.u32(*a);
             out.u32(*b);
         });
-        self.f64(state.kappa);
-        self.vectors(&state.obstacles);
+        self.list(state.contact.as_slice(), |out, contact| {
+            out.f64(contact.kappa);
+            out.vectors(&contact.obstacles);
+            out.list(&contact.asleep, |out, pair| {
+                out.0.push((pair.kind == PairKind::EdgeEdge).into());
+                pair.vertices.iter().for_each(|v| out.u32(*v));
+            });
+        });
     }
 
     fn pose(&mut self, pose: &Pose) {
@@ -37,8 +44,27 @@ pub(super) fn bezier(reader: &mut ByteReader) -> Option<BezierState> {
         pose: pose(reader)?,
         velocities: numbers(reader)?,
         couplings: list(reader, 8, |reader| Some([reader.u32()?, reader.u32()?]))?,
+        contact: {
+            let mut all = list(reader, 24, contact)?;
+            let first = all.pop();
+            all.is_empty().then_some(first)?
+        },
+    })
+}
+
+fn contact(reader: &mut ByteReader) -> Option<ContactState> {
+    Some(ContactState {
         kappa: reader.f64()?,
         obstacles: vectors(reader)?,
+        asleep: list(reader, 17, |reader| {
+            let kind = match reader.u8()? {
+                0 => PairKind::VertexFace,
+                1 => PairKind::EdgeEdge,
+                _ => return None,
+            };
+            let vertices = [reader.u32()?, reader.u32()?, reader.u32()?, reader.u32()?];
+            Some(Pair { kind, vertices })
+        })?,
     })
 }
 

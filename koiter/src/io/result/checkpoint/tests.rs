@@ -1,7 +1,8 @@
 use nalgebra::UnitQuaternion;
 
 use super::*;
-use crate::bezier::Pose;
+use crate::bezier::{ContactState, Pose};
+use crate::contact::{Pair, PairKind};
 use crate::scene::BezierState;
 
 fn checkpoint() -> Checkpoint {
@@ -57,8 +58,14 @@ fn checkpoint() -> Checkpoint {
                 pose: pose(2),
                 velocities: vec![0.5; 12],
                 couplings: vec![[0, 1]],
-                kappa: 3.5,
-                obstacles: vec![Vec3::y()],
+                contact: Some(ContactState {
+                    kappa: 3.5,
+                    obstacles: vec![Vec3::y()],
+                    asleep: vec![Pair {
+                        kind: PairKind::EdgeEdge,
+                        vertices: [0, 1, 2, 7],
+                    }],
+                }),
             }),
             solver: WorkspaceHistory {
                 changing_pairs: vec![[0, 1], [0, 7]],

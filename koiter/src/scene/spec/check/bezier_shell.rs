@@ -42,7 +42,7 @@ pub(super) fn check_bezier_shells(spec: &SceneSpec) -> Checked {
     for (index, done) in spec.procedure.iter().enumerate() {
         check_procedure(index, done, spec)?;
     }
-    check_contact(spec)
+    Ok(())
 }
 
 fn check_one(path: &str, shell: &BezierShellSpec) -> Checked {
@@ -220,14 +220,4 @@ fn check_cut_name(path: &str, name: &str, before: &[ProcedureSpec]) -> Checked {
     }
     let message = format!("there is no cut '{name}' before this");
     Err(error(Kind::UnknownName, path, message).with_help(suggest(name, &names)))
-}
-
-/// The lips of a fresh cut touch, and so do rows that are sewn: a barrier would be infinite there.
-fn check_contact(spec: &SceneSpec) -> Checked {
-    if spec.contact.enabled && !spec.procedure.is_empty() {
-        let message = "the lips of a fresh cut touch each other, which contact does not allow";
-        return Err(error(Kind::Conflict, "contact.enabled", message.to_owned())
-            .with_help("set contact.enabled = false in scenes with procedures"));
-    }
-    Ok(())
 }
