@@ -117,6 +117,7 @@ Examples:
   koiter run my/scene.toml --until 0.5 --no-film --json
   koiter run my/scene.toml --resume            goes on after Ctrl-C, a kill or a full disk
   koiter run my/scene.toml --resume --until 5  goes on beyond the end that was reached
+  koiter run hanging-sheet --interactive       and beside it koiter view results/hanging-sheet: drag the cloth
 
 The result folder holds manifest.json, topology.bin, rest.bin, frames/, stats.jsonl (a line a step), probes.csv and
 summary.json; a result that is there already is replaced, but not an interrupted run.
@@ -135,6 +136,10 @@ pub(crate) struct RunArguments {
     /// Stop at this simulated time [s]
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(crate) until: Option<f64>,
+    /// Play with it: at the pace of the clock, while the mouse pulls at its shells in `koiter view DIR`. It ends at --until,
+    /// else at time.end but not before two minutes
+    #[arg(long)]
+    pub(crate) interactive: bool,
     /// Go on with a run that was interrupted, to the same bits as one that was not
     #[arg(long)]
     pub(crate) resume: bool,

@@ -3,6 +3,7 @@
 mod account;
 mod beginning;
 mod control;
+mod playing;
 mod progress;
 mod refusals;
 mod start;
@@ -29,6 +30,7 @@ use crate::scene_source::load;
 use account::Account;
 use beginning::Beginning;
 use control::Control;
+use playing::{Playing, played_until};
 use progress::Progress;
 
 /// Runs a scene.
@@ -37,7 +39,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         use_threads(threads)?;
     }
     let loaded = load(&arguments.scene)?;
-    let num_steps = num_steps(&loaded.scene, arguments.until)?;
+    let played_until = (arguments.interactive).then(|| played_until(&loaded.scene.timeline));
+    let num_steps = num_steps(&loaded.scene, arguments.until.or(played_until))?;
     let folder = arguments
         .out
         .clone()
@@ -80,6 +83,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
     };
     let interrupt = Interrupt::watch();
     let control = Control::new(&folder, &interrupt, arguments.quiet);
+    let playing = (arguments.interactive)
+        .then(|| Playing::begin(&folder, &simulation))
+        .transpose()?;
     let mut progress = Progress::new(num_steps, simulation.step_count(), arguments.quiet);
     let end = advance(
         &loaded.scene.timeline,
@@ -88,6 +94,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
         &mut recorder,
         &mut progress,
         &control,
+        playing,
     );
     progress.finish();
     let summary_written = (recorder.write_summary(memory::peak_bytes())).map_err(refusals::writing);
@@ -219,13 +226,17 @@ fn advance(
     recorder: &mut Recorder,
     progress: &mut Progress,
     control: &Control<'_>,
+    playing: Option<Playing>,
 ) -> Result<(), Failure> {
-    let mut simulation = simulation;
+    let (mut simulation, mut playing) = (simulation, playing);
     for step in simulation.step_count() + 1..=num_steps {
         if simulation.has_ended() {
             break;
         }
         control.wait_while_paused();
+        if let Some(playing) = &mut playing {
+            playing.before_step(&mut simulation);
+        }
         let report = match simulation.step(timeline.dt(step)) {
             Ok(report) => StepReport {
                 time: timeline.time(step),

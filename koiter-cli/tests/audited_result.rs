@@ -137,6 +137,26 @@ fn frames_that_are_damaged_or_missing_do_not_stop_the_others() {
 }
 
 #[test]
+fn frames_that_are_lost_or_there_twice_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let result = small_result(folder.path());
+    let frame = |index: usize| result.join(format!("frames/{index:05}.bin"));
+    let last = ResultReader::open(&result).unwrap().len() - 1;
+    let told = |report: &Value| report["damaged"][0].as_str().unwrap_or_default().to_owned();
+    let kept = std::fs::read(frame(last)).unwrap();
+    std::fs::remove_file(frame(last)).unwrap();
+    let (report, status_code) = check(&result);
+    assert_eq!(status_code, 1);
+    assert!(told(&report).contains("frames are missing"), "{report}");
+    std::fs::write(frame(last), kept).unwrap();
+    assert_eq!(check(&result).1, 0);
+    std::fs::copy(frame(0), frame(1)).unwrap();
+    let (report, status_code) = check(&result);
+    assert_eq!(status_code, 1);
+    assert!(told(&report).contains("frame 1 is of step 0"), "{report}");
+}
+
+#[test]
 fn what_is_no_result_has_status_2() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();

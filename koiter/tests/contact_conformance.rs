@@ -3,6 +3,7 @@
 use koiter::Vec3;
 use koiter::assembly::{Dof, DofLayout, Energy};
 use koiter::contact::{CollisionBody, CollisionMesh, CollisionPlane, Contact, Friction};
+use koiter::energy::loads::Pull;
 use koiter::energy::{Gravity, Inertia};
 use koiter::testing::check_global;
 
@@ -147,8 +148,15 @@ fn friction_conforms_sticking_and_sliding() {
 }
 
 #[test]
-fn inertia_and_gravity_conform() {
+fn inertia_gravity_and_pulls_conform() {
     let (_, layout, q) = scene(0.0);
+    let mut pull = Pull {
+        vertex: Dof(3),
+        node: layout.node(Dof(3)),
+        target: Vec3::new(0.3, 0.2, 0.1),
+        stiffness: 7.0,
+    };
+    check_global(&mut pull, &layout, &q).unwrap();
     let masses: Vec<f64> = (0..24).map(|i| 0.1 + 0.01 * f64::from(i)).collect();
     let prediction = q.iter().map(|x| x + 0.1).collect();
     check_global(

@@ -81,6 +81,59 @@ test("a run is followed, paused, continued and stopped", async () => {
   served.stop();
 });
 
+for (const [kind, shell] of [
+  ["a shell", '[[shell]]\nname = "cloth"\nmaterial = "cotton"\nmesh.grid = { size = [0.5, 0.5], cells = [8, 8] }'],
+  [
+    "a Bézier shell",
+    '[contact]\nenabled = false\n[[bezier_shell]]\nname = "cloth"\nmaterial = "cotton"\nmesh.grid = { size = [0.5, 0.5], cells = [4, 4] }',
+  ],
+]) {
+  test(`${kind} is pulled with the mouse, and let go`, async () => {
+    const [scene, out] = [join(folder, "pulled.toml"), join(folder, `pulled ${kind}`)];
+    writeFileSync(scene, `title = "Pulled"\ntime = { end = 0.5, dt = 0.02 }\ngravity = [0, 0, 0]\n${shell}\n`);
+    const options = ["--interactive", "--no-film", "--quiet", "--threads", "1"];
+    run = spawn(PROGRAM, ["run", scene, "--out", out, ...options], { stdio: "ignore" });
+    await until("a first frame", () => existsSync(join(out, "frames", "00001.bin")));
+    const served = await serve(out);
+    const page = await openPage(browser, served.url);
+    await page.keyboard.press("3");
+    await page.waitForSelector("#pull");
+    await page.keyboard.press("g");
+    /** The largest way that a vertex has gone since the first frame [m]. */
+    const moved = () =>
+      page.evaluate(async () => {
+        const { koiter } = window as any;
+        koiter.player.seek(koiter.player.end);
+        await koiter.show();
+        const { positions } = koiter.results[0].stage.current;
+        const first = (await koiter.results[0].cache.get(0, null)).positions;
+        return Math.max(...[...positions].map((x: number, k: number) => Math.abs(x - first[k])));
+      });
+    assert.ok((await moved()) < 1e-6, "nothing moves before it is pulled");
+    const view = await page.evaluate(() => (window as any).koiter.viewport.camera.position.toArray());
+    const box = (await page.locator("canvas").first().boundingBox())!;
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 60, y - 40, { steps: 5 });
+    await page.waitForFunction(() => (window as any).koiter.results[0].times.length > 30);
+    await page.screenshot({ path: join(pictureFolder(), `pulled-${kind.replaceAll(" ", "-")}.png`) });
+    assert.ok((await moved()) > 0.01, `${await moved()} m`);
+    assert.match(readFileSync(join(out, "hand.txt"), "utf8"), /^\d+( [-\d.e]+){3}\n$/);
+    await page.mouse.up();
+    await until("the hand to let go", () => readFileSync(join(out, "hand.txt"), "utf8") === "released\n");
+    assert.deepEqual(await page.evaluate(() => (window as any).koiter.viewport.camera.position.toArray()), view);
+
+    const status = new Promise<number | null>((resolve) => run?.once("exit", resolve));
+    await page.locator('button:has-text("Stop")').click();
+    await status;
+    run = undefined;
+    assert.ok(!existsSync(join(out, "hand.txt")));
+    await page.close();
+    served.stop();
+  });
+}
+
 test("an exported file shows the same without a server", async () => {
   const out = join(folder, "out");
   const file = join(folder, "falling.html");

@@ -3,6 +3,7 @@
 import type { Plane } from "three";
 import type { Range, Source } from "./data/source";
 import { decimals } from "./data/timeline";
+import { Hand } from "./hand";
 import { Player } from "./player";
 import { Result } from "./result";
 import { isMap, type MapName } from "./scene/color-map";
@@ -21,8 +22,9 @@ import { TimelineBar } from "./ui/timeline-bar";
 const CACHE_BYTES = 160 << 20;
 /** Frames that are fetched ahead while it plays. */
 const AHEAD = 6;
-/** How often a run in progress is asked for new frames [ms]. */
+/** How often a run in progress is asked for new frames, and one that is played with [ms]. */
 const POLL = 1000;
+const POLL_PLAYED = 40;
 /** Clicks move the pointer less than this [CSS pixels]. */
 const STILL = 5;
 
@@ -35,6 +37,7 @@ export class App {
   readonly plots = new PlotsPanel(() => this.results, (time) => this.player.seek(time));
   readonly picks = new PickPanel((time) => this.player.seek(time));
   readonly message = el("div", { className: "message" });
+  readonly hand = new Hand(this.canvas, this.viewport, () => this.visible, (error) => this.tell(error));
   readonly colors = new ValueColors();
   results: Result[] = [];
   /** Which results are seen: all, or one by its number. */
@@ -46,6 +49,9 @@ export class App {
   preset: Preset = "iso";
   /** Called when what can be chosen has changed. */
   onChange: () => void = () => {};
+  /** When figures were read last [ms], and whether there are newer ones. */
+  private figuresAt = 0;
+  private areFiguresOld = false;
   private isShowing = false;
   private isAsked = false;
   /** Says when what was asked for is drawn. */
@@ -88,7 +94,15 @@ export class App {
     this.setShadows(true);
     await this.show();
     void this.readFigures();
-    setInterval(() => void this.poll(), POLL);
+    void this.pollForEver();
+  }
+
+  private async pollForEver(): Promise<void> {
+    for (;;) {
+      const isPlayed = this.results.some((result) => result.state.playable === true);
+      await new Promise((resolve) => setTimeout(resolve, isPlayed ? POLL_PLAYED : POLL));
+      await this.poll();
+    }
   }
 
   /** Draws the present time, as soon as its frames are here; asked again meanwhile, it then draws the newest time. */
@@ -313,6 +327,7 @@ export class App {
         return;
       }
       if (news.some(({ grew }) => grew)) {
+        this.areFiguresOld = true;
         this.timesChanged();
         if (wasAtEnd && !this.player.isPlaying) {
           this.player.seek(this.player.end);
@@ -320,6 +335,15 @@ export class App {
         if (wasEmpty) {
           await this.fit(this.preset);
         }
+      }
+      // Figures and buttons need not keep up with a hand.
+      const now = performance.now();
+      if (now - this.figuresAt < POLL) {
+        return;
+      }
+      this.figuresAt = now;
+      if (this.areFiguresOld) {
+        this.areFiguresOld = false;
         await this.readFigures();
       }
       this.onChange();

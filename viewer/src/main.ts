@@ -49,6 +49,7 @@ function keysOf(app: App, side: Side, root: HTMLElement): Key[] {
     key(["s", "S"], "S", "facets or smooth", () => side.shading.click()),
     key(["h", "H"], "H", "shadows", () => side.shadows.click()),
     key(["d", "D"], "D", "dark or light", () => document.getElementById("dark")?.click()),
+    key(["g", "G"], "G", "pull at a run that is played with, or turn", () => document.getElementById("pull")?.click()),
     key(["p", "P"], "P", "save a picture", () => void side.picture()),
     key(["m", "M"], "M", "hide or show the panel", () => root.classList.toggle("narrow")),
   ];

@@ -88,10 +88,18 @@ impl Report {
         if rest.is_none() {
             report.compared_with = "first readable frame";
         }
-        let mut audit = None;
+        let (mut audit, mut last_step) = (None, None);
         let bar = ProgressBar::new(reader.len() as u64);
         for index in 0..reader.len() {
-            let row = match reader.frame(index) {
+            let frame = reader.frame(index);
+            if let Ok(Frame { step, .. }) = &frame {
+                if last_step.is_some_and(|last| *step <= last) {
+                    let message = format!("frame {index} is of step {step}, as an earlier frame");
+                    report.damaged.push(message);
+                }
+                last_step = Some(*step);
+            }
+            let row = match frame {
                 // What burns away has other faces in every frame: each is compared with itself.
                 Ok(frame) if frame.topology.is_some() => {
                     report.compared_with = "each frame itself";
@@ -109,6 +117,7 @@ impl Report {
             bar.inc(1);
         }
         bar.finish_and_clear();
+        report.damaged.extend(frames_lost(reader, last_step));
         report.clean &= report.damaged.is_empty();
         Ok(report)
     }
@@ -177,6 +186,17 @@ impl Report {
             say!("nothing intersects, nothing is collapsed");
         }
     }
+}
+
+/// What is missing if the last frame is not of the last step of a run that came to its end.
+fn frames_lost(reader: &ResultReader, last_step: Option<u64>) -> Option<String> {
+    let summary = reader.summary().ok().flatten()?;
+    let steps = |key: &str| summary[key].as_u64();
+    let (taken, last) = (steps("steps")?, last_step?);
+    let is_finished = steps("planned_steps") == Some(taken);
+    (is_finished && last < taken).then(|| {
+        format!("the last frame is of step {last}, but the run took {taken}: frames are missing")
+    })
 }
 
 /// Bodies, solids and rest shape of a result; `first` is the first frame that can be read.

@@ -4,8 +4,8 @@ use std::io::{self, ErrorKind, Read, Write};
 
 /// Most bytes of the request line and headers together; browsers send about one thousand.
 const MAX_HEAD: usize = 16 << 10;
-/// Most bytes of a body: requests carry one word.
-const MAX_BODY: usize = 64;
+/// Most bytes of a body: requests carry a word, or a vertex and three numbers.
+const MAX_BODY: usize = 128;
 
 /// What a connection asks for.
 #[derive(Debug, Default, PartialEq, Eq)]

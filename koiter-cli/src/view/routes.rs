@@ -12,6 +12,7 @@
 //! /api/results/R/stats, /probes  figures a step, a list a column
 //! /api/results/R/scene           the scene as it was run
 //! /api/results/R/request         POST pause, continue or stop
+//! /api/results/R/hand            POST "V x y z", to pull a vertex there, or "released"
 //! ```
 
 use koiter::io::result::Element;
@@ -61,13 +62,16 @@ impl Site {
 const HTML: &str = "text/html; charset=utf-8";
 
 fn of_result(result: &Shown, words: &[&str], request: &Request) -> Option<Answer> {
-    if let ["request"] = words {
-        return request
-            .is_post
-            .then(|| match result.request(&request.body) {
-                Ok(()) => Answer::json(&json!({})),
-                Err(message) => Answer::error(409, &message),
-            });
+    let asked = match words {
+        ["request"] if request.is_post => Some(result.request(&request.body)),
+        ["hand"] if request.is_post => Some(result.pull(&request.body)),
+        _ => None,
+    };
+    if let Some(asked) = asked {
+        return Some(match asked {
+            Ok(()) => Answer::json(&json!({})),
+            Err(message) => Answer::error(409, &message),
+        });
     }
     if request.is_post {
         return None;

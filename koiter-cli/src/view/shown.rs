@@ -6,7 +6,7 @@ use std::sync::{Mutex, OnceLock, PoisonError, RwLock, RwLockReadGuard, RwLockWri
 use std::time::SystemTime;
 
 use koiter::io::result::{
-    Element, Field, FolderLock, Frame, Manifest, PartKind, ResultReader, RunRequest,
+    Element, Field, FolderLock, Frame, Hand, Manifest, PartKind, ResultReader, RunRequest,
 };
 use serde_json::{Value, json};
 
@@ -160,6 +160,7 @@ impl Shown {
             "ended": summary.is_some(),
             "running": running,
             "request": RunRequest::read(&self.path).map(RunRequest::word),
+            "playable": running != Some(false) && Hand::read(&self.path).is_some(),
             "summary": summary,
         }))
     }
@@ -331,6 +332,17 @@ impl Shown {
             _ => return Err("a run can be asked to pause, continue or stop".to_owned()),
         };
         asked.map_err(|error| error.to_string())
+    }
+
+    /// Pulls at a run that is played with.
+    pub(super) fn pull(&self, line: &[u8]) -> Answered<()> {
+        let hand = (std::str::from_utf8(line).ok().and_then(Hand::parse))
+            .ok_or("a hand says \"VERTEX X Y Z\" or \"released\"")?;
+        let is_folder = matches!(self.content, Content::Folder(_));
+        if !is_folder || Hand::read(&self.path).is_none() {
+            return Err("no run is played with here: koiter run SCENE --interactive".to_owned());
+        }
+        hand.write(&self.path).map_err(|error| error.to_string())
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use koiter::Vec3;
-use koiter::io::result::{Field, FolderLock, Frame, Manifest, Part, PartKind, ResultWriter};
+use koiter::io::result::{Field, FolderLock, Frame, Hand, Manifest, Part, PartKind, ResultWriter};
 use serde_json::Value;
 
 use super::guard::Guard;
@@ -126,9 +126,13 @@ impl Served {
     }
 
     fn ask(&self, word: &str, token: &str) -> u16 {
+        self.post("request", word, token)
+    }
+
+    fn post(&self, what: &str, word: &str, token: &str) -> u16 {
         let (port, length) = (self.port, word.len());
         let request = format!(
-            "POST /api/results/0/request HTTP/1.1\r\nHost: localhost:{port}\r\nX-Koiter-Token: {token}\r\n\
+            "POST /api/results/0/{what} HTTP/1.1\r\nHost: localhost:{port}\r\nX-Koiter-Token: {token}\r\n\
              Content-Length: {length}\r\n\r\n{word}"
         );
         self.send(request.as_bytes()).0
@@ -258,6 +262,31 @@ fn a_run_is_asked_only_with_the_token_and_only_while_it_goes_on() {
     assert_eq!(served.get("/api/results/0/request").0, 404);
     drop(lock);
     assert_eq!(served.json("/api/results/0/state")["running"], false);
+}
+
+#[test]
+fn a_hand_pulls_only_with_the_token_and_only_where_a_run_waits_for_it() {
+    let served = Served::new();
+    let result = served.folder.path().join("result");
+    let pull = |line: &str| served.post("hand", line, &served.token);
+    let target = Vec3::new(0.1, 0.25, -2e-3);
+    assert_eq!(pull("2 0.1 0.25 -2e-3"), 409, "no run waits");
+    assert_eq!(served.json("/api/results/0/state")["playable"], false);
+    let lock = FolderLock::take(&result).unwrap();
+    Hand::Released.write(&result).unwrap();
+    assert_eq!(served.json("/api/results/0/state")["playable"], true);
+    assert_eq!(served.post("hand", "2 0 0 0", "wrong"), 403);
+    for line in ["", "2 0 0", "2 0 0 nan", "../x 0 0 0", "released now"] {
+        assert_eq!(pull(line), 409, "{line}");
+    }
+    assert_eq!(pull(&format!("2 {}", "0".repeat(200))), 413);
+    assert_eq!(Hand::read(&result), Some(Hand::Released));
+    assert_eq!(pull("2 0.1 0.25 -2e-3"), 200);
+    assert_eq!(Hand::read(&result), Some(Hand::Pulls { vertex: 2, target }));
+    assert_eq!(pull("released"), 200);
+    assert_eq!(Hand::read(&result), Some(Hand::Released));
+    drop(lock);
+    assert_eq!(served.json("/api/results/0/state")["playable"], false);
 }
 
 #[test]

@@ -11,7 +11,7 @@ use super::dynamics::Dynamics;
 use super::map::{Carried, SurfacePoint};
 use super::newton::Potential;
 use super::pose::NODE_UNKNOWNS;
-use super::{BezierError, DeadLoad, MappedContact, NewtonLimits, Pose, Tangent};
+use super::{BezierError, BezierShell, DeadLoad, MappedContact, NewtonLimits, Pose, Tangent};
 use crate::Vec3;
 use crate::assembly::{HessianBuilder, NodeId};
 
@@ -27,7 +27,19 @@ pub struct Drag {
 }
 
 /// All drags, as carried by the shell.
-struct Drags(Vec<(Carried, Drag)>);
+pub struct Drags(Vec<(Carried, Drag)>);
+
+impl Drags {
+    /// Drags of points of a shell. A drag of an element that a cut took away pulls at nothing.
+    pub fn new(shell: &BezierShell, drags: &[Drag]) -> Self {
+        let elements = shell.elements().len();
+        let held = drags.iter().filter(|drag| drag.point.element < elements);
+        Self(
+            held.map(|drag| (Carried::new(shell, &drag.point), *drag))
+                .collect(),
+        )
+    }
+}
 
 impl Potential for Drags {
     fn value(&self, pose: &Pose) -> Option<f64> {
@@ -118,11 +130,7 @@ impl Interaction {
             tangent: Tangent::Corotated,
             ..NewtonLimits::for_edges(edge)
         };
-        let carried = |drag: &Drag| (Carried::new(shell, &drag.point), *drag);
-        // A drag of an element that a cut took away pulls at nothing.
-        let elements = shell.elements().len();
-        let held = (self.drags.iter()).filter(|drag| drag.point.element < elements);
-        let mut drags = Drags(held.map(carried).collect());
+        let mut drags = Drags::new(shell, &self.drags);
         let mut load = self.load.clone();
         let mut others: Vec<&mut dyn Potential> = vec![&mut drags, &mut load];
         if let Some(contact) = &mut self.contact {

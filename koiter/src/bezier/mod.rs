@@ -51,7 +51,7 @@ pub use element::{Element, ElementKind, ElementState, RestElement};
 pub use error::BezierError;
 pub use fields::PointFields;
 pub use frame::FrameRule;
-pub use interactive::{Drag, FrameReport, Interaction};
+pub use interactive::{Drag, Drags, FrameReport, Interaction};
 pub use lips::{Lens, Lips, Patch};
 pub use map::{Carried, MappedSurface, SurfacePoint};
 pub use mapped_contact::{ContactOptions, ContactState, MappedContact};

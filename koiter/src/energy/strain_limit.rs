@@ -295,13 +295,17 @@ impl LocalEnergy<9, 3> for StrainLimit {
             return 1.0;
         }
         let chord = LARGEST_SHARE * left / (stretches.values[0] - before);
-        // σ₁ is convex along the line: Newton's method comes from beyond and never passes the root.
+        // σ₁ is convex along the line: Newton's method comes from beyond and never passes the root, but for round-off. Where
+        // next to nothing is left that can be more than the way to the root itself; the chord then tells how far is safe.
         for _ in 0..MAX_ROOT_ITERATIONS {
             let excess = stretches.values[0] - target;
             if excess <= ROOT_TOLERANCE * left {
                 return t;
             }
             t -= excess / stretches.slope(&change);
+            if !(t >= chord) {
+                break;
+            }
             stretches = at(t);
         }
         chord

@@ -9,6 +9,7 @@
 //! checkpoint.bin    where an interrupted run goes on
 //! summary.json      one JSON object, at the end of the run
 //! request.txt       what someone asks of the run: pause or stop
+//! hand.txt          where a hand pulls, while the run can be played with
 //! ```
 //!
 //! Vertices and faces of all parts are numbered through; a [`Part`] says which ranges are its own. Numbers in the
@@ -20,6 +21,7 @@ mod error;
 mod folder_lock;
 mod frame;
 mod frame_probe;
+mod hand;
 mod manifest;
 mod reader;
 mod request;
@@ -32,6 +34,7 @@ pub use error::ResultError;
 pub use folder_lock::FolderLock;
 pub use frame::{Field, Frame, FrameInfo, FrameTopology};
 pub use frame_probe::{Element, FrameProbe};
+pub use hand::Hand;
 pub use manifest::{Manifest, Part, PartKind, UpAxis};
 pub use reader::{ResultReader, decode_stats};
 pub use request::RunRequest;
@@ -48,6 +51,7 @@ const STATS: &str = "stats.jsonl";
 const CHECKPOINT: &str = "checkpoint.bin";
 const SUMMARY: &str = "summary.json";
 const REQUEST: &str = "request.txt";
+const HAND: &str = "hand.txt";
 
 fn frame_path(folder: &Path, index: usize) -> PathBuf {
     folder.join(FRAMES).join(format!("{index:05}.bin"))

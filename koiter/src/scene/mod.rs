@@ -31,6 +31,7 @@ mod outside;
 mod phases;
 mod point_cache;
 mod position_bending;
+mod pulled;
 pub mod schedule;
 mod simulation;
 mod sizes;
@@ -85,6 +86,7 @@ pub use self::{
     outside::ChangeError,
     phases::{PhaseSteps, Timeline},
     point_cache::PointCache,
+    pulled::{PullError, VertexPull},
     simulation::Simulation,
     sizes::SystemStats,
     snapshot::{RestoreError, Snapshot},

@@ -62,16 +62,24 @@ pub(super) fn line_search(
 ) -> Taken {
     let start = Instant::now();
     report.limiter = None;
-    let whole: Vec<f64> = line.direction.iter().map(|d| d * line.reach).collect();
     let mut bound: f64 = 1.0;
-    for energy in &mut problem.energies {
-        let allowed = energy.max_step(q, &whole);
-        if allowed < bound {
-            bound = allowed;
-            report.limiter = Some(Limiter {
-                by: energy.name().into(),
-                place: energy.step_limiter().unwrap_or_default(),
-            });
+    // Contact comes last: a search for pairs costs most, and the less the shorter the way is that the others leave.
+    for is_contact in [false, true] {
+        let way: Vec<f64> = (line.direction.iter())
+            .map(|d| d * (line.reach * bound))
+            .collect();
+        let asked =
+            (problem.energies.iter_mut()).filter(|e| e.has_changing_pattern() == is_contact);
+        let so_far = bound;
+        for energy in asked {
+            let allowed = so_far * energy.max_step(q, &way);
+            if allowed < bound {
+                bound = allowed;
+                report.limiter = Some(Limiter {
+                    by: energy.name().into(),
+                    place: energy.step_limiter().unwrap_or_default(),
+                });
+            }
         }
     }
     if bound * line.reach >= 1.0 {

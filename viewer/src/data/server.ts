@@ -1,6 +1,6 @@
 // Results from the server of `koiter view`.
 
-import type { Columns, Element, FrameData, Info, Range, Request, RunState, Source } from "./source";
+import type { Columns, Element, FrameData, Hand, Info, Range, Request, RunState, Source } from "./source";
 
 /** The results that the server has. */
 export async function serverSources(): Promise<Source[]> {
@@ -60,13 +60,17 @@ class ServerSource implements Source {
     return (await answer(`${this.address}/scene`)).text();
   }
 
-  async request(word: Request): Promise<void> {
+  request(word: Request): Promise<void> {
+    return this.post("request", word);
+  }
+
+  pull(hand: Hand | null): Promise<void> {
+    return this.post("hand", hand === null ? "released" : [hand.vertex, ...hand.target].join(" "));
+  }
+
+  private async post(what: string, body: string): Promise<void> {
     const token = document.querySelector<HTMLMetaElement>('meta[name="koiter-token"]')?.content ?? "";
-    await answer(`${this.address}/request`, {
-      method: "POST",
-      headers: { "X-Koiter-Token": token },
-      body: word,
-    });
+    await answer(`${this.address}/${what}`, { method: "POST", headers: { "X-Koiter-Token": token }, body });
   }
 }
 

@@ -38,6 +38,8 @@ export interface RunState {
   /** Whether a run writes to it now; null where that cannot be told. */
   running: boolean | null;
   request?: "pause" | "stop" | null;
+  /** Whether a hand may pull at the run. */
+  playable?: boolean;
   summary?: Record<string, unknown> | null;
 }
 
@@ -58,6 +60,12 @@ export type Columns = Record<string, (number | null)[]>;
 
 export type Element = { vertex: number } | { face: number };
 
+/** A vertex, and where it is to go [m]. */
+export interface Hand {
+  vertex: number;
+  target: [number, number, number];
+}
+
 export type Request = "pause" | "continue" | "stop";
 
 export interface Source {
@@ -73,4 +81,6 @@ export interface Source {
   scene(): Promise<string>;
   /** Asks the run; absent where no run can be asked. */
   request?(word: Request): Promise<void>;
+  /** Pulls a vertex to a place [m], or lets go. */
+  pull?(hand: Hand | null): Promise<void>;
 }

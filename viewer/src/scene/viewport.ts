@@ -4,7 +4,7 @@ import { BasicShadowMap, PerspectiveCamera, Plane, Ray, Raycaster, Vector2, Vect
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Axis } from "../data/source";
 import type { Box } from "./mesh-math";
-import type { Hit } from "./pick";
+import type { Hit, Vector } from "./pick";
 import { middle, radiusOf, type Stage } from "./stage";
 import { fromDirection, type Preset, upVector } from "./views";
 
@@ -112,6 +112,13 @@ export class Viewport {
 
   /** What lies under a point of the page, and in which result. */
   pick(x: number, y: number): { stage: number; hit: Hit } | null {
+    const { ray, stage } = this.sight(x, y);
+    const hit = this.stages[stage]?.pick(ray.origin.toArray(), ray.direction.toArray());
+    return hit ? { stage, hit } : null;
+  }
+
+  /** The line of sight through a point of the page, and the result that it meets. */
+  private sight(x: number, y: number): { ray: Ray; stage: number } {
     const rect = this.canvas.getBoundingClientRect();
     const count = Math.max(1, this.stages.length);
     const share = ((x - rect.left) / rect.width) * count;
@@ -119,9 +126,20 @@ export class Viewport {
     const point = new Vector2(2 * (share - stage) - 1, 1 - (2 * (y - rect.top)) / rect.height);
     const caster = new Raycaster();
     caster.setFromCamera(point, this.camera);
-    const ray: Ray = caster.ray;
-    const hit = this.stages[stage]?.pick(ray.origin.toArray(), ray.direction.toArray());
-    return hit ? { stage, hit } : null;
+    return { ray: caster.ray, stage };
+  }
+
+  /** Whether dragging turns the camera. */
+  setTurning(turns: boolean): void {
+    this.controls.enabled = turns;
+  }
+
+  /** The point of the plane through `through` across the line of sight that lies under a point of the page. */
+  under(x: number, y: number, through: Vector): [number, number, number] | null {
+    const { ray } = this.sight(x, y);
+    const normal = this.camera.getWorldDirection(new Vector3());
+    const plane = new Plane().setFromNormalAndCoplanarPoint(normal, new Vector3(...through));
+    return ray.intersectPlane(plane, new Vector3())?.toArray() ?? null;
   }
 
   /** Draws at once, with all pixels: for pictures. */

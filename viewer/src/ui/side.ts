@@ -197,7 +197,13 @@ export class Side {
     const first = isPaused
       ? button("Continue", "Let the run go on", ask("continue"))
       : button("Pause", "Have the run wait after this step", ask("pause"));
-    return [told, row(first, button("Stop", "End the run after this step, saved to be resumed", ask("stop")))];
+    const stop = button("Stop", "End the run after this step, saved to be resumed", ask("stop"));
+    const { hand } = this.app;
+    const pull = toggle("Pull", "Drags pull at the shells instead of turning the view (G)", hand.isOn, (on) => {
+      hand.isOn = on;
+    });
+    pull.id = "pull";
+    return [told, row(first, stop, ...(state.playable === true ? [pull] : []))];
   }
 
   private takeAwayRows(): HTMLElement[] {

@@ -7,11 +7,13 @@ mod dead_load;
 mod director_moment;
 mod edge_moment;
 mod pressure;
+mod pull;
 
 pub use dead_load::{DeadLoad, VertexForce};
 pub use director_moment::{DirectorMoment, TurnedDirectors};
 pub use edge_moment::{EdgeMoment, TurnedEdge};
 pub use pressure::Pressure;
+pub use pull::Pull;
 
 use crate::assembly::{
     Assembled, Energy, HessianBuilder, Pattern, PatternBuilder, PsdProjection, WorstElement,
@@ -27,6 +29,8 @@ pub enum Load {
     Moment(Assembled<EdgeMoment, 13, 5>),
     /// Moments on the directors at the ends of edges.
     DirectorMoment(Assembled<DirectorMoment, 12, 4>),
+    /// What a hand pulls at, with no factor.
+    Pull(Pull),
 }
 
 impl Load {
@@ -37,6 +41,7 @@ impl Load {
             Self::Pressure(load) => load.local_mut().factor = factor,
             Self::Moment(load) => load.local_mut().factor = factor,
             Self::DirectorMoment(load) => load.local_mut().factor = factor,
+            Self::Pull(_) => {}
         }
     }
 
@@ -46,6 +51,7 @@ impl Load {
             Self::Pressure(load) => load,
             Self::Moment(load) => load,
             Self::DirectorMoment(load) => load,
+            Self::Pull(load) => load,
         }
     }
 }
@@ -57,7 +63,7 @@ impl Load {
             Self::DirectorMoment(load) => {
                 load.local().edges.iter().map(|edge| edge.turned).collect()
             }
-            Self::Dead(_) | Self::Pressure(_) => Vec::new(),
+            Self::Dead(_) | Self::Pressure(_) | Self::Pull(_) => Vec::new(),
         }
     }
 
@@ -71,7 +77,7 @@ impl Load {
                 let edges = load.local_mut().edges.iter_mut();
                 edges.map(|edge| &mut edge.turned).collect()
             }
-            Self::Dead(_) | Self::Pressure(_) => Vec::new(),
+            Self::Dead(_) | Self::Pressure(_) | Self::Pull(_) => Vec::new(),
         }
     }
 }
@@ -91,7 +97,7 @@ impl Loads {
             match load {
                 Load::Moment(load) => load.local_mut().rebase(q),
                 Load::DirectorMoment(load) => load.local_mut().rebase(q),
-                Load::Dead(_) | Load::Pressure(_) => {}
+                Load::Dead(_) | Load::Pressure(_) | Load::Pull(_) => {}
             }
         }
     }
@@ -150,7 +156,7 @@ impl Energy for Loads {
     fn bind(&mut self, pattern: &Pattern) {
         for load in &mut self.loads {
             match load {
-                Load::Dead(_) => {}
+                Load::Dead(_) | Load::Pull(_) => {}
                 Load::Pressure(load) => load.bind(pattern),
                 Load::Moment(load) => load.bind(pattern),
                 Load::DirectorMoment(load) => load.bind(pattern),

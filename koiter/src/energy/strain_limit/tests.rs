@@ -125,3 +125,18 @@ fn a_step_ends_near_the_limit_but_short_of_it() {
     }
     assert_eq!(limit.max_step(0, &start, &(-2.0 * start)), 1.0);
 }
+
+#[test]
+fn where_next_to_nothing_is_left_a_step_is_short_and_never_backwards() {
+    let (limit, _) = one_face();
+    for ulps in 1..200u32 {
+        let start = stretched([1.1 - f64::from(ulps) * f64::EPSILON, 0.9]);
+        if !limit.is_admissible(0, &start) {
+            continue;
+        }
+        for end in [[1.2, 1.0], [3.0, 0.1], [1e6, 1e6], [-50.0, 40.0]] {
+            let t = limit.max_step(0, &start, &(stretched(end) - start));
+            assert!((0.0..1e-9).contains(&t), "{ulps} {end:?}: {t}");
+        }
+    }
+}

@@ -6,7 +6,7 @@ use super::tracked::Tracked;
 use super::{BezierModel, FineSurface};
 use crate::Vec3;
 use crate::bezier::{
-    BezierError, BezierShell, ContactOptions, Dynamics, MappedContact, MappedSurface,
+    BezierError, BezierShell, ContactOptions, Drag, Dynamics, MappedContact, MappedSurface,
     NODE_UNKNOWNS, Pose, Supports,
 };
 use crate::scene::assemble::{BuildError, LARGEST_REACH_BY_EDGE, default_d_hat, default_kappa};
@@ -20,6 +20,8 @@ pub(in crate::scene) struct BezierBody {
     pub(super) tracked: Tracked,
     /// The poses that the procedures which are done have found.
     pub(super) done: Vec<Pose>,
+    /// What hands pull at.
+    pub(in crate::scene) drags: Vec<Drag>,
     /// The fine surface by parts.
     pub(super) shown: Vec<ShownPart>,
 }
@@ -50,6 +52,7 @@ impl BezierBody {
         let mut body = Self {
             contact: None,
             done: Vec::new(),
+            drags: Vec::new(),
             moving,
             fine,
             tracked,

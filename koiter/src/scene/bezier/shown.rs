@@ -3,7 +3,7 @@
 use super::BezierModel;
 use super::body::BezierBody;
 use crate::Vec3;
-use crate::bezier::{MappedSurface, PointFields};
+use crate::bezier::{MappedSurface, PointFields, SurfacePoint};
 use crate::scene::display::PartTopology;
 
 /// A part of the fine surface.
@@ -63,6 +63,16 @@ impl BezierBody {
             }
         };
         self.shown.iter().map(part).collect()
+    }
+
+    /// Where on the shell a vertex lies, by its number among those of all parts.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub(in crate::scene) fn shown_point(&self, vertex: usize) -> SurfacePoint {
+        let mut shown = self.shown.iter().flat_map(|part| &part.vertices);
+        let fine = *shown.nth(vertex).expect("the vertex is shown");
+        self.fine.points()[fine as usize]
     }
 
     /// Positions of the vertices of all parts [m].

@@ -8,7 +8,7 @@ use super::body::BezierBody;
 use super::{BezierModel, ProcedureKind};
 use crate::Vec3;
 use crate::bezier::{
-    BezierError, DeadLoad, MappedContact, NODE_UNKNOWNS, NewtonLimits, NewtonOutcome, Pose,
+    BezierError, DeadLoad, Drags, MappedContact, NODE_UNKNOWNS, NewtonLimits, NewtonOutcome, Pose,
     Potential, Pressure, Supports, linear_static,
 };
 use crate::integrate::{StepError, StepReport};
@@ -140,7 +140,8 @@ impl BezierBody {
         dt: f64,
         limits: &NewtonLimits,
     ) -> Result<NewtonOutcome, BezierError> {
-        let mut others: Vec<&mut dyn Potential> = vec![load];
+        let mut drags = Drags::new(&self.moving.shell, &self.drags);
+        let mut others: Vec<&mut dyn Potential> = vec![load, &mut drags];
         others.extend(pressures.iter_mut().map(|p| p as &mut dyn Potential));
         others.extend(contact.map(|c| c as &mut dyn Potential));
         match model.integrator.is_dynamic() {
