@@ -90,6 +90,9 @@ export class App {
     this.setTheme();
     this.viewport.setStages(this.visible.map((result) => result.stage));
     this.timesChanged();
+    if (this.isPlayed) {
+      this.player.seek(this.player.end);
+    }
     await this.fit("iso");
     this.setShadows(true);
     await this.show();
@@ -97,10 +100,14 @@ export class App {
     void this.pollForEver();
   }
 
+  /** Whether a hand may pull at one of the runs. */
+  private get isPlayed(): boolean {
+    return this.results.some((result) => result.state.playable === true);
+  }
+
   private async pollForEver(): Promise<void> {
     for (;;) {
-      const isPlayed = this.results.some((result) => result.state.playable === true);
-      await new Promise((resolve) => setTimeout(resolve, isPlayed ? POLL_PLAYED : POLL));
+      await new Promise((resolve) => setTimeout(resolve, this.isPlayed ? POLL_PLAYED : POLL));
       await this.poll();
     }
   }
